@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "terrain/cell.h"
+#include "terrain/legend.h"
+
+namespace terra {
+
+enum class SearchStatus {
+  kFound,
+  kNoRoute,
+  kStartOutside,
+  kGoalOutside,
+  kStartBlocked,
+  kGoalBlocked,
+};
+
+/// What a search on the raster found and what it took.
+struct SearchResult {
+  SearchStatus status = SearchStatus::kNoRoute;
+  /// kImpassable unless found; equals WalkRoute of the cells.
+  double cost = kImpassable;
+  /// The optimal path cell by cell, start to goal; start = goal is one cell.
+  CellPath cells;
+  /// Work done: cells expanded (or visited by a sweep, each visit counted).
+  std::int64_t expanded = 0;
+
+  bool found() const { return status == SearchStatus::kFound; }
+};
+
+}  // namespace terra

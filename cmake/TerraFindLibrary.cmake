@@ -1,0 +1,18 @@
+# terra_find_library(TARGET HEADER header [SUFFIX dir] LIBRARIES name...): an
+# imported target for a library that ships no CMake package, or a heavy one.
+function(terra_find_library target)
+  cmake_parse_arguments(ARG "" "HEADER;SUFFIX" "LIBRARIES" ${ARGN})
+  if(TARGET ${target})
+    return()
+  endif()
+  string(MAKE_C_IDENTIFIER "${target}" id)
+  find_path(${id}_INCLUDE_DIR ${ARG_HEADER} PATH_SUFFIXES ${ARG_SUFFIX} REQUIRED)
+  mark_as_advanced(${id}_INCLUDE_DIR)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE "${${id}_INCLUDE_DIR}")
+  foreach(library IN LISTS ARG_LIBRARIES)
+    find_library(${id}_${library} ${library} REQUIRED)
+    mark_as_advanced(${id}_${library})
+    target_link_libraries(${target} INTERFACE "${${id}_${library}}")
+  endforeach()
+endfunction()

@@ -1,0 +1,42 @@
+# What another project can link after `cmake --install`: the message types, the
+# ground truth and the verifier, as TerraAdvisor::terra_msg, ::terra_terrain and
+# ::terra_verifier of find_package(TerraAdvisor).
+include(CMakePackageConfigHelpers)
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/TerraAdvisor")
+
+install(TARGETS terra_msg terra_terrain terra_verifier
+        EXPORT TerraAdvisorTargets)
+install(EXPORT TerraAdvisorTargets NAMESPACE TerraAdvisor::
+        DESTINATION "${package_dir}")
+foreach(folder IN ITEMS terrain verifier)
+  file(GLOB headers "${PROJECT_SOURCE_DIR}/${folder}/*.h")
+  list(FILTER headers EXCLUDE REGEX "_node\\.h$")
+  install(FILES ${headers}
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/terra_advisor/${folder}")
+endforeach()
+
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/TerraAdvisorConfig.cmake.in"
+  "${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfig.cmake"
+  INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfig.cmake"
+              "${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfigVersion.cmake"
+              "${PROJECT_SOURCE_DIR}/cmake/FindLCM.cmake"
+              "${PROJECT_SOURCE_DIR}/cmake/TerraFindLibrary.cmake"
+        DESTINATION "${package_dir}")
+
+# The executables of the running set, and the target that builds just them.
+set(executables)
+foreach(name IN ITEMS terra terra-map terra-planner terra-graph-planner
+                      terra-advisor terra-verifier terra-logger terra-llm-sim
+                      terra-chaos)
+  if(TARGET ${name})
+    list(APPEND executables ${name})
+  endif()
+endforeach()
+add_custom_target(terra_stack)
+if(executables)
+  add_dependencies(terra_stack ${executables})
+  install(TARGETS ${executables})
+endif()

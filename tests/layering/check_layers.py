@@ -1,0 +1,112 @@
+"""Checks who includes what: the layers of docs/architecture.md.
+
+usage: check_layers.py SOURCE_FOLDER
+
+Prints each include that breaks a rule as FILE:LINE and exits with 1.
+"""
+
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
+FOLDERS = ["terrain", "bus", "planner", "verifier", "advisor", "logger",
+           "benchmark", "cli"]
+
+# Project folders that a folder may include, besides itself. "terrain" is the
+# pure ground truth; "terrain/files" are its readers and writers.
+ALLOWED = {
+    "terrain": set(),
+    "terrain/files": {"terrain"},
+    "bus": {"terrain", "terra_msg"},
+    "planner": {"terrain"},
+    "verifier": {"terrain"},
+    "advisor": {"terrain"},
+    "logger": {"terrain", "verifier", "bus", "terra_msg"},
+    "benchmark": {"terrain", "terrain/files", "planner", "advisor",
+                  "verifier"},
+    "cli": {"terrain", "terrain/files", "planner", "advisor", "verifier",
+            "logger", "benchmark", "bus", "terra_msg"},
+}
+# Process code: files that talk to the bus. Pure files of a folder never
+# include these, so the cores stay testable without a bus.
+NODE_FILE = re.compile(r"(_node|_?main|_process)\.(h|cc)$")
+NODE_MAY_ADD = {"bus", "terra_msg", "terrain/files"}
+NODE_NEVER = {"verifier": {"terrain/files"}}
+
+# Libraries, by the prefix of the include, and the places that may use them.
+LIBRARIES = {
+    "lcm/": ["bus/", "logger/", "lcmtypes/"],
+    "curl/": ["advisor/http_transport"],
+    "opencv2/": ["terrain/files/", "advisor/", "benchmark/", "cli/", "logger/"],
+    "CLI/": ["bus/", "cli/", "main", "_node", "_options"],
+    "CLI11": ["bus/", "cli/", "main"],
+    "spdlog/": ["bus/", "_node", "main", "cli/"],
+}
+
+
+def folder_of(path):
+    if path.startswith("terrain/files/"):
+        return "terrain/files"
+    return path.split("/")[0]
+
+
+def problem(path, included):
+    """Returns what is wrong with this include, or None."""
+    for prefix, places in LIBRARIES.items():
+        if included.startswith(prefix) and not any(p in path for p in places):
+            return f"<{prefix}...> is not for this file"
+    target = folder_of(included)
+    if target not in ALLOWED and target != "terra_msg":
+        return None  # a system header
+    own = folder_of(path)
+    if target == own:
+        is_node = NODE_FILE.search(path)
+        if NODE_FILE.search(included) and not is_node and own != "bus":
+            return "pure code includes process code"
+        return None
+    allowed = set(ALLOWED[own])
+    if NODE_FILE.search(path):
+        allowed |= NODE_MAY_ADD - NODE_NEVER.get(own, set())
+    if target not in allowed:
+        return f"{own} may not include {target}"
+    return None
+
+
+def check(root):
+    problems = []
+    for folder in FOLDERS:
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in (".h", ".cc"):
+                continue
+            path = file.relative_to(root).as_posix()
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                match = INCLUDE.match(line)
+                wrong = match and problem(path, match.group(1))
+                if wrong:
+                    problems.append(f"{path}:{number}: {match.group(1)}: {wrong}")
+    return problems
+
+
+def self_test():
+    """Every kind of violation must be seen, or the check proves nothing."""
+    bad = [("verifier/gate.cc", "planner/coarse_lattice.h"),
+           ("verifier/verify.cc", "lcm/lcm.h"),
+           ("terrain/map.cc", "opencv2/core.hpp"),
+           ("terrain/map.cc", "terrain/files/map_file.h"),
+           ("planner/coarse_lattice.cc", "terra_msg/baseline_t.hpp"),
+           ("planner/coarse_lattice.cc", "planner/planner_node.h"),
+           ("verifier/verifier_node.cc", "terrain/files/map_file.h"),
+           ("advisor/prompt.cc", "curl/curl.h")]
+    good = [("verifier/verifier_node.cc", "bus/bus.h"),
+            ("verifier/gate.cc", "terrain/map.h"),
+            ("cli/plan_command.cc", "planner/coarse_lattice.h")]
+    assert all(problem(*case) for case in bad), bad
+    assert not any(problem(*case) for case in good), good
+
+
+if __name__ == "__main__":
+    self_test()
+    found = check(pathlib.Path(sys.argv[1]))
+    print("\n".join(found) or "layers are in order")
+    sys.exit(1 if found else 0)

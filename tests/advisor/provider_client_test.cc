@@ -105,7 +105,8 @@ TEST_P(EveryProviderTest, TheKeyIsSentButNeverComesBack) {
     EXPECT_THAT(reply.body, Not(HasSubstr(kSecret)));
   }
   std::string sent;
-  for (const auto& [name, value] : server.requests().front().headers) {
+  const auto seen = server.requests();
+  for (const auto& [name, value] : seen.front().headers) {
     sent += name + ": " + value + "\n";
   }
   EXPECT_THAT(sent, HasSubstr(kSecret));

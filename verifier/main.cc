@@ -59,9 +59,9 @@ int main(int argc, char** argv) {
     terra::verifier::VerifierNode* gate_node = node.get();
     context.loop.Watch(receiver->fd(), [&, gate_node](terra::bus::Time now) {
       receiver->Drain(Microseconds(now), kDatagramsPerTurn,
-                      [gate_node](const terra::bus::LcmDatagram& datagram,
-                                  terra::bus::SenderAddress) {
-                        gate_node->OnAdviceBytes(datagram.payload);
+                      [gate_node, now](const terra::bus::LcmDatagram& datagram,
+                                       terra::bus::SenderAddress) {
+                        gate_node->OnAdviceBytes(datagram.payload, now);
                       });
     });
     return std::unique_ptr<terra::bus::Node>(std::move(node));

@@ -125,7 +125,7 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
   Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
     if (map_.OnTiles(message, now)) OnMap(now);
   });
-  Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time) {
+  Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
     const bool cancel =
         message.action == terra_msg::plan_request_t::ACTION_CANCEL;
     if (!cancel && message.action != terra_msg::plan_request_t::ACTION_GO) {
@@ -133,7 +133,8 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
     }
     Decide(RequestEvent{message.request_id, cancel,
                         Cell{message.start_x, message.start_y},
-                        Cell{message.goal_x, message.goal_y}});
+                        Cell{message.goal_x, message.goal_y}},
+           now);
   });
   Listen<baseline_t>([this](const auto& message, bus::Time now) {
     OnBaseline(message, now);
@@ -141,39 +142,37 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
 }
 
 void VerifierNode::ListenToAdvice() {
-  Listen<advice_t>([this](const auto& message, bus::Time) {
-    OnAdvice(message);
+  Listen<advice_t>([this](const auto& message, bus::Time now) {
+    Decide(ToEvent(message), now);
   });
 }
 
-void VerifierNode::OnAdviceBytes(std::span<const std::uint8_t> bytes) {
+void VerifierNode::OnAdviceBytes(std::span<const std::uint8_t> bytes,
+                                 bus::Time now) {
   const Result<advice_t> message = bus::Decode<advice_t>(bytes);
   if (message) {
-    OnAdvice(*message);
+    Decide(ToEvent(*message), now);
   } else {
     ++malformed_advice_;
     last_error_ = "advice: " + message.error().message;
   }
 }
 
-void VerifierNode::OnMap(bus::Time /*now*/) {
+void VerifierNode::OnMap(bus::Time now) {
   const bus::MapPtr held = map_.map();
   Decide(MapEvent{std::shared_ptr<const TerrainMap>(held, &held->map),
-                  held->map_id});
+                  held->map_id},
+         now);
 }
 
-void VerifierNode::OnBaseline(const baseline_t& message, bus::Time /*now*/) {
+void VerifierNode::OnBaseline(const baseline_t& message, bus::Time now) {
   if (planner_.Accept(message.session, message.seq)) {
-    Decide(ToEvent(message));
+    Decide(ToEvent(message), now);
   }
 }
 
-void VerifierNode::OnAdvice(const advice_t& message) {
-  Decide(ToEvent(message));
-}
-
 template <typename Event>
-void VerifierNode::Decide(const Event& event) {
+void VerifierNode::Decide(const Event& event, bus::Time now) {
   const auto begin = bus::Clock::now();
   const Decisions decisions = gate_.On(event);
   const auto t_det = std::chrono::duration_cast<std::chrono::microseconds>(
@@ -182,7 +181,7 @@ void VerifierNode::Decide(const Event& event) {
     if (const auto* verdict = std::get_if<Verdict>(&decision)) {
       Send(*verdict, t_det.count());
     } else {
-      Send(std::get<Deployed>(decision));
+      Send(std::get<Deployed>(decision), now);
     }
   }
 }
@@ -192,10 +191,10 @@ void VerifierNode::Send(const Verdict& verdict, std::int64_t t_det_us) {
   out_.Send(message);
 }
 
-void VerifierNode::Send(const Deployed& deployed) {
+void VerifierNode::Send(const Deployed& deployed, bus::Time now) {
   deployed_message_ = ToMessage(deployed);
   out_.Send(deployed_message_);
-  repeat_.Postpone(bus::Clock::now());
+  repeat_.Postpone(now);
 }
 
 bus::Time VerifierNode::Advance(bus::Time now) {

@@ -25,7 +25,7 @@ class VerifierNode : public bus::Node {
   void ListenToAdvice();
 
   /// Takes the bytes of one ADVICE message off the advice bus.
-  void OnAdviceBytes(std::span<const std::uint8_t> bytes);
+  void OnAdviceBytes(std::span<const std::uint8_t> bytes, bus::Time now);
 
   /// For the heartbeat; the receiver must outlive the node.
   void Count(const bus::AdviceReceiver& receiver) { receiver_ = &receiver; }
@@ -38,13 +38,12 @@ class VerifierNode : public bus::Node {
  private:
   void OnMap(bus::Time now);
   void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
-  void OnAdvice(const terra_msg::advice_t& message);
 
   /// Lets the gate decide, publishes what came of it.
   template <typename Event>
-  void Decide(const Event& event);
+  void Decide(const Event& event, bus::Time now);
   void Send(const Verdict& verdict, std::int64_t t_det_us);
-  void Send(const Deployed& deployed);
+  void Send(const Deployed& deployed, bus::Time now);
 
   Gate gate_;
   bus::Outbox& out_;

@@ -54,6 +54,10 @@ class DeployedPathTest : public ::testing::Test {
   std::string map_path() const { return (folder_ / "map.png").string(); }
   void SaveMap(const TerrainMap& map) {
     ASSERT_TRUE(WriteIdPng(map, map_path()).ok());
+    // File times are coarser than this test is fast.
+    std::filesystem::last_write_time(
+        map_path(),
+        std::filesystem::last_write_time(map_path()) + seconds(++saves_));
   }
 
   void StartMap() {
@@ -139,6 +143,7 @@ class DeployedPathTest : public ::testing::Test {
   }
   baseline_t LastBaseline() const { return network_.Sent<baseline_t>().back(); }
 
+  int saves_ = 0;
   VirtualNetwork network_{7};
   std::filesystem::path folder_;
   std::int64_t requests_ = 0;

@@ -38,7 +38,15 @@ struct ProblemArguments {
 /// Adds the map's options, --start and --goal.
 void AddProblemOptions(CLI::App& command, ProblemArguments& arguments);
 
-/// Reads the map and checks that start and goal are passable cells of it.
-Result<TerrainMap> LoadProblem(const ProblemArguments& arguments);
+/// Adds a required option that takes a route text.
+void AddRouteOption(CLI::App& command, const std::string& name, Route& route,
+                    const std::string& description);
+
+/// Reads the map.
+Result<TerrainMap> LoadMap(const MapArguments& arguments);
+
+/// Errors: the cell is outside the map or impassable. `name` is "start" or
+/// "goal".
+Status CheckEnd(const TerrainMap& map, const std::string& name, Cell cell);
 
 }  // namespace terra::cli

@@ -15,6 +15,8 @@ namespace terra::cli {
 void AddPlanCommand(CLI::App& app, int& exit_code);
 void AddOracleCommand(CLI::App& app, int& exit_code);
 void AddVerifyCommand(CLI::App& app, int& exit_code);
+void AddAdviseCommand(CLI::App& app, int& exit_code);
 void AddRenderCommand(CLI::App& app, int& exit_code);
+void AddRequestCommand(CLI::App& app, int& exit_code);
 
 }  // namespace terra::cli

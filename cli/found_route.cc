@@ -13,10 +13,8 @@ namespace {
 
 Error WhyNoRoute(SearchStatus status, const ProblemArguments& problem,
                  const TerrainMap& map) {
-  for (const Status& end : {CheckEnd(map, "start", problem.start),
-                            CheckEnd(map, "goal", problem.goal)}) {
-    if (!end.ok()) return end.error();
-  }
+  const Status ends = CheckEnds(map, problem);
+  if (!ends.ok()) return ends.error();
   TERRA_REQUIRE(status == SearchStatus::kNoRoute);
   return Error{ErrorCode::kNotFound, "there is no route from " +
                                          ToString(problem.start) + " to " +

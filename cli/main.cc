@@ -16,7 +16,9 @@ void AddCommands(CLI::App& app, int& exit_code) {
   AddPlanCommand(app, exit_code);
   AddOracleCommand(app, exit_code);
   AddVerifyCommand(app, exit_code);
+  AddAdviseCommand(app, exit_code);
   AddRenderCommand(app, exit_code);
+  AddRequestCommand(app, exit_code);
 }
 
 int Run(int argc, char** argv) {

@@ -16,6 +16,23 @@ T ValueOrThrow(Result<T> parsed, const std::string& option) {
   return std::move(*parsed);
 }
 
+Status CheckEnd(const TerrainMap& map, const std::string& name, Cell cell) {
+  if (!map.Contains(cell)) {
+    return Error{ErrorCode::kInvalid, name + " " + ToString(cell) +
+                                          " is outside the map; x is 0 to " +
+                                          std::to_string(map.width() - 1) +
+                                          ", y is 0 to " +
+                                          std::to_string(map.height() - 1)};
+  }
+  if (map.Passable(cell)) return Done{};
+  const Terrain* terrain = map.legend().Find(map.ids()(cell.y, cell.x));
+  const bool own = terrain->cost == kImpassable;
+  return Error{ErrorCode::kInvalid,
+               name + " " + ToString(cell) + " is on impassable ground (" +
+                   (own ? terrain->name : "too near to an obstacle") +
+                   "); choose another cell"};
+}
+
 }  // namespace
 
 void AddCostModelOptions(CLI::App& command, CostModel& model) {
@@ -55,14 +72,23 @@ void AddCellOption(CLI::App& command, const std::string& name, Cell& cell,
       ->type_name("X,Y");
 }
 
-void AddRouteOption(CLI::App& command, const std::string& name, Route& route,
-                    const std::string& description) {
+CLI::Option* AddRouteOption(CLI::App& command, const std::string& name,
+                            std::optional<Route>& route,
+                            const std::string& description) {
   const auto read = [&route, name](const std::string& text) {
     route = ValueOrThrow(ParseRoute(text), name);
   };
-  command.add_option_function<std::string>(name, read, description)
+  return command.add_option_function<std::string>(name, read, description)
       ->required()
       ->type_name("ROUTE");
+}
+
+void AddStrideOption(CLI::App& command, int& stride) {
+  command
+      .add_option("--stride", stride,
+                  "Distance of lattice nodes in cells (default 50)")
+      ->check(CLI::Range(1, TerrainMap::kMaxSide))
+      ->type_name("N");
 }
 
 void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
@@ -77,21 +103,9 @@ Result<TerrainMap> LoadMap(const MapArguments& arguments) {
   return std::move(file->map);
 }
 
-Status CheckEnd(const TerrainMap& map, const std::string& name, Cell cell) {
-  if (!map.Contains(cell)) {
-    return Error{ErrorCode::kInvalid, name + " " + ToString(cell) +
-                                          " is outside the map; x is 0 to " +
-                                          std::to_string(map.width() - 1) +
-                                          ", y is 0 to " +
-                                          std::to_string(map.height() - 1)};
-  }
-  if (map.Passable(cell)) return Done{};
-  const Terrain* terrain = map.legend().Find(map.ids()(cell.y, cell.x));
-  const bool own = terrain->cost == kImpassable;
-  return Error{ErrorCode::kInvalid,
-               name + " " + ToString(cell) + " is on impassable ground (" +
-                   (own ? terrain->name : "too near to an obstacle") +
-                   "); choose another cell"};
+Status CheckEnds(const TerrainMap& map, const ProblemArguments& problem) {
+  const Status start = CheckEnd(map, "start", problem.start);
+  return start.ok() ? CheckEnd(map, "goal", problem.goal) : start;
 }
 
 }  // namespace terra::cli

@@ -38,11 +38,7 @@ void AddPlanCommand(CLI::App& app, int& exit_code) {
       "plan", "Find the baseline: the cheapest route on a coarse lattice");
   const auto arguments = std::make_shared<PlanArguments>();
   AddProblemOptions(command, arguments->problem);
-  command
-      .add_option("--stride", arguments->lattice.stride,
-                  "Distance of lattice nodes in cells (default 50)")
-      ->check(CLI::Range(1, TerrainMap::kMaxSide))
-      ->type_name("N");
+  AddStrideOption(command, arguments->lattice.stride);
   command.add_flag("--json", arguments->json, "Print JSON");
   command.footer(
       "Example:\n"

@@ -1,5 +1,6 @@
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -21,7 +22,7 @@ using verifier::RouteCheck;
 
 struct VerifyArguments {
   ProblemArguments problem;
-  Route baseline;
+  std::optional<Route> baseline;  // Always given.
   std::string candidate;
   bool json = false;
 };
@@ -31,7 +32,7 @@ Comparison Compare(const VerifyArguments& arguments, const TerrainMap& map) {
   const ProblemArguments& problem = arguments.problem;
   const Result<Route> candidate = ParseRoute(arguments.candidate);
   Comparison result = verifier::CompareRoutes(
-      map, problem.start, problem.goal, arguments.baseline,
+      map, problem.start, problem.goal, *arguments.baseline,
       candidate.ok() ? *candidate : Route{});
   if (!candidate.ok()) {
     result.candidate.code = Code::kParseError;

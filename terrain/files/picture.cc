@@ -83,7 +83,7 @@ std::vector<Line> LinesInside(const TerrainMap& map, const Route& route,
 }
 
 int LineWidth(int scale) {
-  return std::max(2, scale / 3);
+  return std::clamp(scale / 3, 2, 8);
 }
 
 void DrawRoute(cv::Mat& image, const TerrainMap& map, const PictureRoute& route,

@@ -50,6 +50,8 @@ struct Anchor {
   std::int64_t route_seq = 0;
   std::int32_t index = 0;
   Cell cell;
+
+  friend bool operator==(const Anchor&, const Anchor&) = default;
 };
 
 /// What kind of answer an advisor has. Numbers are those of advice_t.
@@ -143,6 +145,8 @@ struct Verdict {
   std::int64_t route_seq_before = 0;
   int fail_segment = -1;
   Cell fail_cell;
+
+  friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 
 using Decision = std::variant<Verdict, Deployed>;

@@ -72,8 +72,8 @@ TEST(Picture, RoutesOutsideTheMapAreLeftOutAndTakeNoTime) {
   options.routes = {{{{1, 1}, {20, 1}, {20, 4}, {1, 4}}, kBaselineColor, ""},
                     {{{0, 0}, {999'999'999, 7}}, kCandidateColor, ""}};
   const cv::Mat image = Drawn(WhiteMap(10, 6), options);
-  EXPECT_EQ(PixelAt(image, 89, 13), kBaselineColor);
-  EXPECT_EQ(PixelAt(image, 89, 27), FromRgb(0xFFFFFF))
+  EXPECT_EQ(PixelAt(image, 84, 13), kBaselineColor);
+  EXPECT_EQ(PixelAt(image, 84, 27), FromRgb(0xFFFFFF))
       << "both parts inside must not be joined";
 }
 

@@ -148,12 +148,7 @@ TEST(RealProcesses, LargeMapReachesEveryProcessAtDefaultKernelLimits) {
   StartDeployedPath(robot);
   robot.Start("advisor");
   for (const char* name : {"planner", "verifier", "advisor"}) {
-    EXPECT_TRUE(robot.deployed_bus().WaitFor<status_t>(
-        [name](const status_t& status) {
-          return status.status_name == name && status.state == "ready";
-        },
-        std::chrono::seconds(60)))
-        << name;
+    EXPECT_TRUE(robot.WaitForReady(name, std::chrono::seconds(60))) << name;
   }
   const auto deployed = robot.Ask(11, {10, 10}, {3900, 3900});
   ASSERT_TRUE(deployed);
@@ -183,8 +178,8 @@ TEST(RealProcesses, HostileBytesOnBothBusesStopNobody) {
   Robot robot(BarMap());
   StartDeployedPath(robot);
   robot.Start("advisor");
-  ASSERT_TRUE(robot.WaitForState("verifier", "ready"));
-  ASSERT_TRUE(robot.WaitForState("advisor", "ready"));
+  ASSERT_TRUE(robot.WaitForReady("verifier"));
+  ASSERT_TRUE(robot.WaitForReady("advisor"));
   testing::Random random(3);
   for (int i = 0; i < 2000; ++i) {
     std::vector<std::uint8_t> bytes(

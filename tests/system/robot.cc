@@ -74,11 +74,15 @@ std::optional<deployed_t> Robot::WaitForDeployed(std::int64_t request_id,
   });
 }
 
-bool Robot::WaitForState(const std::string& name, const std::string& state) {
+bool Robot::WaitForReady(const std::string& name, milliseconds at_most) {
+  const pid_t pid = process(name).pid();
   return deployed_
-      .WaitFor<terra_msg::status_t>([&](const terra_msg::status_t& status) {
-        return status.status_name == name && status.state == state;
-      })
+      .WaitFor<terra_msg::status_t>(
+          [&](const terra_msg::status_t& status) {
+            return status.status_name == name && status.pid == pid &&
+                   status.state.starts_with("ready");
+          },
+          at_most)
       .has_value();
 }
 

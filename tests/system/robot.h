@@ -36,8 +36,10 @@ class Robot {
   /// Waits for a deployment of a request in a mode.
   std::optional<terra_msg::deployed_t> WaitForDeployed(std::int64_t request_id,
                                                        std::int8_t mode);
-  /// Waits for a heartbeat of a process in a state.
-  bool WaitForState(const std::string& name, const std::string& state);
+  /// Waits for a heartbeat of the process that now has this name, whose state
+  /// begins with "ready".
+  bool WaitForReady(const std::string& name,
+                    std::chrono::milliseconds at_most = BusPeer::kPatience);
 
   void SaveMap(const TerrainMap& map);
 

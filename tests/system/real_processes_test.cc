@@ -110,13 +110,7 @@ TEST(RealProcesses, EachProcessKilledAfterTheRequesterWentIsBackInService) {
     robot.Start(name, name == "planner"
                           ? std::vector<std::string>{"--stride", "20"}
                           : std::vector<std::string>{});
-    EXPECT_TRUE(
-        robot.deployed_bus().WaitFor<status_t>([&](const status_t& status) {
-          return status.status_name == name &&
-                 status.pid == robot.process(name).pid() &&
-                 status.state == "ready";
-        }))
-        << name;
+    EXPECT_TRUE(robot.WaitForReady(name)) << name;
     EXPECT_TRUE(robot.WaitForDeployed(11, deployed_t::MODE_CANDIDATE))
         << "after " << name << " was killed";
   }

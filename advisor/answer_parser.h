@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "advisor/answer_kind.h"
 #include "terrain/cell.h"
 
 namespace terra::advisor {
@@ -21,15 +22,6 @@ struct AnswerRules {
   std::size_t max_bytes = 65'536;
   std::size_t max_waypoints = 2'048;  ///< Per list.
 };
-
-enum class AnswerKind {
-  kMalformed,  ///< An answer without a readable first list: an attempt.
-  kRetain,     ///< A canonical Yes.
-  kPropose,    ///< At least the first list was read.
-};
-
-/// Did the answer have exactly the form asked for (white space aside)?
-enum class AnswerForm { kExact, kTolerated };
 
 /// Why an answer, or one list of it, could not be read.
 enum class AnswerFault {
@@ -57,7 +49,8 @@ struct AnswerCandidate {
   std::size_t position = 0;  ///< Byte of the answer where the fault is.
 };
 
-/// What an answer says.
+/// What an answer says: a canonical Yes (kRetain), at least the first list
+/// (kPropose), or no readable first list (kMalformed).
 struct Answer {
   AnswerKind kind = AnswerKind::kMalformed;
   AnswerForm form = AnswerForm::kTolerated;

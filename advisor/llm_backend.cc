@@ -1,225 +1,187 @@
 #include "advisor/llm_backend.h"
 
-#include <algorithm>
-#include <array>
-#include <map>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
-#include <CLI/CLI.hpp>
-
-#include "advisor/exchange_client.h"
-#include "advisor/recording.h"
+#include "terrain/native_search.h"
+#include "terrain/route_text.h"
 
 namespace terra::advisor {
 namespace {
 
-Result<std::unique_ptr<LlmClient>> MakeClient(
-    const LlmBackendOptions& options) {
-  if (options.backend == "replay") {
-    return ReplayClient::Create(options.recording,
-                                options.provider.settings.model);
-  }
-  if (options.backend == "exchange") {
-    ExchangeOptions exchange;
-    exchange.folder = options.exchange_folder;
-    exchange.deadline_s = options.provider.deadline_s;
-    if (!options.provider.settings.model.empty()) {
-      exchange.model = options.provider.settings.model;
+using Clock = std::chrono::steady_clock;
+
+std::int64_t Microseconds(double seconds) {
+  return std::llround(seconds * 1e6);
+}
+
+std::int64_t MicrosecondsSince(Clock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() -
+                                                               begin)
+      .count();
+}
+
+/// Why there is no route: the word that programs read, then the detail.
+std::string Reason(const std::string& cause, const std::string& detail) {
+  return detail.empty() ? cause : cause + ": " + detail;
+}
+
+/// Leaves out cells in the middle of straight runs. A run along one of the 8
+/// directions visits the same cells without them.
+Route WithoutMidRunCells(const Route& cells) {
+  Route kept;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool inner = i > 0 && i + 1 < cells.size();
+    if (inner && cells[i].x - cells[i - 1].x == cells[i + 1].x - cells[i].x &&
+        cells[i].y - cells[i - 1].y == cells[i + 1].y - cells[i].y) {
+      continue;
     }
-    return std::unique_ptr<LlmClient>(
-        std::make_unique<ExchangeClient>(std::move(exchange)));
+    kept.push_back(cells[i]);
   }
-  return ProviderClient::Create(options.backend, options.provider);
-}
-
-void AddLimitOptions(CLI::App& app, CallLimits& limits) {
-  const std::string group = "Limits";
-  app.add_option("--calls-per-minute", limits.calls_per_minute,
-                 "At most so many calls a minute; 0 = no limit")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 100'000))
-      ->group(group);
-  app.add_option("--spend-per-hour", limits.spend_per_hour_usd,
-                 "At most so many dollars an hour; needs --price; 0 = no limit")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
-  app.add_option("--breaker-failures", limits.breaker_failures,
-                 "Failures in succession after which calls pause; 0 = never")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1'000))
-      ->group(group);
-  app.add_option("--breaker-wait", limits.breaker_first_wait_s,
-                 "Seconds of the first such pause; it doubles up to "
-                 "--breaker-max-wait")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0))
-      ->group(group);
-  app.add_option("--breaker-max-wait", limits.breaker_max_wait_s,
-                 "Seconds of the longest pause")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0))
-      ->group(group);
-}
-
-void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
-  const std::string group = "Model";
-  GenerationSettings& settings = provider.settings;
-  app.add_option("--model", settings.model,
-                 "Model; empty = the backend's default")
-      ->group(group);
-  app.add_option("--base-url", provider.base_url,
-                 "Address of a server that speaks the backend's form; https, "
-                 "or http on this machine")
-      ->group(group);
-  app.add_option("--max-output-tokens", settings.max_output_tokens,
-                 "Token limit of an answer, thinking included")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000))
-      ->group(group);
-  app.add_option("--effort", settings.effort,
-                 "Thinking effort; '' = leave it to the provider")
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--image-detail", settings.image_detail,
-                 "openai: image detail; '' = not sent")
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--anthropic-version", settings.anthropic_version,
-                 "anthropic: version header")
-      ->capture_default_str()
-      ->group(group);
-  app.add_flag("--anthropic-bearer", settings.anthropic_bearer,
-               "anthropic: send the key as bearer token")
-      ->group(group);
-  app.add_option("--try-timeout", provider.try_timeout_s,
-                 "Seconds for one request")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 3'600.0))
-      ->group(group);
-  app.add_option("--deadline", provider.deadline_s,
-                 "Seconds for a case, retries and waits included")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 604'800.0))
-      ->group(group);
-  app.add_option("--retries", provider.retry.max_retries,
-                 "Requests after the first one, for passing failures")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 10))
-      ->group(group);
-  app.add_option("--max-retry-wait", provider.retry.max_wait_s,
-                 "Seconds; a server that demands a longer wait has failed")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 3'600.0))
-      ->group(group);
+  return kept;
 }
 
 }  // namespace
 
-bool IsLlmBackend(std::string_view backend) {
-  constexpr std::array<std::string_view, 6> kNames = {
-      "openai", "gemini", "anthropic", "chat", "exchange", "replay"};
-  return std::find(kNames.begin(), kNames.end(), backend) != kNames.end();
+std::string BusCaseId(std::int64_t map_id, Cell start, Cell goal) {
+  return std::to_string(map_id) + " " + FormatRoute({start, goal});
 }
 
-Result<LlmBackend> MakeLlmBackend(const LlmBackendOptions& options,
-                                  AtLimit at_limit) {
-  PriceTable prices;
-  for (const std::string& price : options.prices) {
-    if (const auto added = prices.Add(price); !added) return added.error();
+Result<std::shared_ptr<const ReferencePool>> LoadReferences(
+    const std::string& path) {
+  if (path.empty()) {
+    // It lives as long as the program: nothing to free.
+    return std::shared_ptr<const ReferencePool>(std::shared_ptr<void>(),
+                                                &ReferencePool::Builtin());
   }
-  auto client = MakeClient(options);
-  if (!client) return client.error();
-  const std::string model = (*client)->identity().model;
-  if (options.limits.spend_per_hour_usd > 0 && !prices.Knows(model)) {
-    return Error{ErrorCode::kInvalid,
-                 "--spend-per-hour needs the price of the model: --price " +
-                     model + "=INPUT:OUTPUT"};
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return Error{ErrorCode::kNotFound, path + ": no such reference pool"};
   }
-  LlmBackend made;
-  made.monitor = std::make_shared<CallMonitor>();
-  made.client = std::make_unique<LimitedClient>(
-      std::move(client.value()), options.limits, std::move(prices), at_limit,
-      made.monitor);
-  if (!options.record.empty()) {
-    auto recording = RecordingClient::Create(
-        std::move(made.client), options.record, options.record_images);
-    if (!recording) return recording.error();
-    made.client = std::move(recording.value());
-  }
-  return made;
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  auto pool = ReferencePool::Parse(text);
+  if (!pool)
+    return Error{pool.error().code, path + ": " + pool.error().message};
+  return std::make_shared<const ReferencePool>(*std::move(pool));
 }
 
-void AddPromptOptions(CLI::App& app, MethodOptions& method) {
-  const std::string group = "Prompt";
-  PromptSwitches& prompt = method.prompt;
-  app.add_option("--method", method.method, "advisor, direct or llm-astar")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Method>{{"advisor", Method::kAdvisor},
-                                        {"direct", Method::kDirect},
-                                        {"llm-astar", Method::kLlmAstar}}))
-      ->default_str("advisor")
-      ->group(group);
-  app.add_flag("--overlay,!--no-overlay", prompt.overlay,
-               "Show the picture with the baseline (default)")
-      ->group(group);
-  app.add_flag("--route-text,!--no-route-text", prompt.route_text,
-               "Describe the baseline's points and cost (default)")
-      ->group(group);
-  app.add_flag("--rea,!--no-rea", prompt.rea, "Show a reference pair (default)")
-      ->group(group);
-  app.add_option_function<std::string>(
-         "--picture",
-         [&prompt](const std::string& form) {
-           prompt.axes = form == "axes";
-         },
-         "native (one pixel a cell) or axes (two, with ticks and grid lines)")
-      ->check(CLI::IsMember({"native", "axes"}))
-      ->default_str("native")
-      ->group(group);
-  app.add_flag("--regions", prompt.regions, "Terrain as a table of regions")
-      ->group(group);
-  app.add_flag("--stretches", prompt.stretches,
-               "Cost of the baseline by stretch of terrain")
-      ->group(group);
-  app.add_option("--candidates", prompt.candidates,
-                 "Routes asked for in one answer")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 8))
-      ->group(group);
-  app.add_option("--noise", method.noise_percent,
-                 "Percent of the cells that the model is shown wrongly")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0))
-      ->group(group);
-  app.add_option("--seed", method.seed,
-                 "Of the choice of references and of noise")
-      ->capture_default_str()
-      ->group(group);
+Result<std::unique_ptr<Backend>> LlmBackend::Create(
+    const LlmBackendOptions& options) {
+  auto service = MakeLlmService(options.service, AtLimit::kRefuse);
+  if (!service) return service.error();
+  auto pool = LoadReferences(options.references);
+  if (!pool) return pool.error();
+  return std::unique_ptr<Backend>(std::make_unique<LlmBackend>(
+      options.service.backend, *std::move(service), options, *std::move(pool)));
 }
 
-void AddLlmOptions(CLI::App& app, LlmBackendOptions& backend,
-                   MethodOptions& method) {
-  AddPromptOptions(app, method);
-  AddProviderOptions(app, backend.provider);
-  AddLimitOptions(app, backend.limits);
-  const std::string group = "Model";
-  app.add_option("--exchange", backend.exchange_folder,
-                 "exchange: folder of questions and answers")
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--recording", backend.recording,
-                 "replay: recording to answer from")
-      ->group(group);
-  app.add_option("--record", backend.record,
-                 "Keep every call in this file (JSON lines)")
-      ->group(group);
-  app.add_flag("--images,!--no-images", backend.record_images,
-               "Keep the pictures beside a recording (default)")
-      ->group(group);
-  app.add_option("--price", backend.prices,
-                 "MODEL=INPUT:OUTPUT, dollars per million tokens; repeatable")
-      ->group(group);
+LlmBackend::LlmBackend(std::string name, LlmService service,
+                       const LlmBackendOptions& options,
+                       std::shared_ptr<const ReferencePool> pool)
+    : name_(std::move(name)),
+      service_(std::move(service)),
+      method_(options.method),
+      min_gain_percent_(options.min_gain_percent),
+      pool_(std::move(pool)) {}
+
+std::string LlmBackend::method() const {
+  return std::string(MethodName(method_.method));
+}
+
+bool LlmBackend::WorthAsking(const AdviceTask& task) const {
+  if (min_gain_percent_ <= 0) return true;
+  const double enough = task.baseline_cost * (1 - min_gain_percent_ / 100);
+  NativeSearchOptions bound;
+  bound.upper_bound = enough;
+  return NativeSearch(task.map, task.start, task.goal, bound).found();
+}
+
+AdviceAnswer LlmBackend::Advise(const AdviceTask& task, std::stop_token stop) {
+  AdviceAnswer answer;
+  const auto begin = Clock::now();
+  if (!WorthAsking(task)) {
+    const std::lock_guard lock(mutex_);
+    ++skipped_;
+    answer.error = "skipped: no route can be cheaper by --min-gain";
+    return answer;
+  }
+  const PlanningCase planning_case{
+      BusCaseId(task.map_id, task.start, task.goal),
+      task.map,
+      task.start,
+      task.goal,
+      task.baseline,
+      task.baseline_cost,
+      ""};
+  const PreparedCase prepared =
+      PrepareCase(planning_case, method_, pool_.get());
+  answer.t_prep_us = MicrosecondsSince(begin);
+  answer.request_hash =
+      RequestHash(service_.client->identity(), prepared.request);
+  const LlmReply reply = service_.client->Ask(prepared.request, stop);
+  Keep(ReadReply(planning_case, method_, reply), reply, answer);
+  return answer;
+}
+
+void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
+                      AdviceAnswer& answer) const {
+  answer.kind = outcome.kind;
+  answer.form = outcome.form;
+  answer.model =
+      reply.model.empty() ? service_.client->identity().model : reply.model;
+  answer.answer_text = reply.text;
+  answer.tokens_in = reply.usage.tokens_in;
+  answer.tokens_out = reply.usage.tokens_out;
+  answer.spend_usd = reply.spend_usd.value_or(0);
+  answer.t_llm_us = Microseconds(reply.t_llm_s);
+  if (!outcome.cause.empty()) {
+    answer.error = Reason(outcome.cause, outcome.detail);
+  }
+  for (const OutcomeCandidate& candidate : outcome.candidates) {
+    if (!candidate.fault.empty()) {
+      answer.error = Reason(answer.error, candidate.fault);
+      continue;
+    }
+    answer.candidates.push_back({method_.method == Method::kLlmAstar
+                                     ? WithoutMidRunCells(candidate.route)
+                                     : candidate.route,
+                                 false});
+  }
+  if (answer.kind == AnswerKind::kPropose && answer.candidates.empty()) {
+    answer.kind = AnswerKind::kMalformed;
+  }
+}
+
+BackendFigures LlmBackend::figures() const {
+  const CallFigures calls = service_.monitor->figures();
+  const CallStatistics& statistics = calls.statistics;
+  BackendFigures figures;
+  if (calls.breaker_open) figures.state = "breaker open";
+  if (calls.busy) figures.state = "calling";
+  figures.last_error = calls.last_error;
+  std::int64_t skipped = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    skipped = skipped_;
+  }
+  const auto latency_ms = [&statistics](double percent) {
+    return std::llround(statistics.latency_percentile_s(percent) * 1e3);
+  };
+  figures.counters = {
+      {"llm_calls", statistics.calls()},
+      {"llm_no_answer", statistics.no_answers()},
+      {"llm_skipped", skipped},
+      {"llm_p50_ms", latency_ms(50)},
+      {"llm_p95_ms", latency_ms(95)},
+      {"tokens_in", statistics.tokens_in()},
+      {"tokens_out", statistics.tokens_out()},
+      {"spend_micro_usd", Microseconds(statistics.spend_usd())},
+      {"spend_hour_micro_usd", Microseconds(calls.spend_last_hour_usd)},
+  };
+  return figures;
 }
 
 }  // namespace terra::advisor

@@ -1,56 +1,68 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "advisor/call_limits.h"
-#include "advisor/limited_client.h"
-#include "advisor/llm_client.h"
+#include "advisor/backend.h"
 #include "advisor/llm_methods.h"
-#include "advisor/provider_client.h"
+#include "advisor/llm_service.h"
 #include "terrain/result.h"
-
-namespace CLI {
-class App;
-}
 
 namespace terra::advisor {
 
-/// Everything that says which model answers, and within which limits.
+/// How an LLM advises.
 struct LlmBackendOptions {
-  /// "openai", "gemini", "anthropic", "chat", "exchange", "replay".
-  std::string backend;
-  ProviderOptions provider;
-  std::string exchange_folder = "exchange";
-  std::string recording;  ///< replay: what is replayed.
-  std::string record;     ///< Where calls are kept; empty = nowhere.
-  bool record_images = true;
-  CallLimits limits;
-  std::vector<std::string> prices;  ///< "MODEL=INPUT:OUTPUT".
+  LlmServiceOptions service;
+  MethodOptions method;
+  std::string references;  ///< Pool file; empty = the one that comes along.
+  /// Percent of the baseline's cost. When the native optimum (a lower bound of
+  /// every route) promises less, nobody is asked; 0 = always ask.
+  double min_gain_percent = 0;
 };
 
-/// Is this backend one of a model (or of whoever stands in for one)?
-bool IsLlmBackend(std::string_view backend);
+/// A language model as an advisor: prepares the question, asks, reads the
+/// answer. Values of tasks and answers only; the bus is the caller's business.
+///
+/// Threads: as Backend. Limits refuse a call at once (AtLimit::kRefuse).
+class LlmBackend : public Backend {
+ public:
+  /// Errors: as MakeLlmService and LoadReferences.
+  static Result<std::unique_ptr<Backend>> Create(
+      const LlmBackendOptions& options);
 
-/// A client ready to be asked, with its figures.
-struct LlmBackend {
-  std::unique_ptr<LlmClient> client;
-  std::shared_ptr<CallMonitor> monitor;
+  /// `pool` may be null (no REA).
+  LlmBackend(std::string name, LlmService service,
+             const LlmBackendOptions& options,
+             std::shared_ptr<const ReferencePool> pool);
+
+  std::string name() const override { return name_; }
+  std::string method() const override;
+  AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) override;
+  BackendFigures figures() const override;
+
+ private:
+  bool WorthAsking(const AdviceTask& task) const;
+  void Keep(const MethodOutcome& outcome, const LlmReply& reply,
+            AdviceAnswer& answer) const;
+
+  std::string name_;
+  LlmService service_;
+  MethodOptions method_;
+  double min_gain_percent_;
+  std::shared_ptr<const ReferencePool> pool_;
+  mutable std::mutex mutex_;
+  std::int64_t skipped_ = 0;
 };
 
-/// Puts the client together: backend, then limits and prices, then recording.
-/// Errors: as of the parts; a spend limit without a price of the model.
-Result<LlmBackend> MakeLlmBackend(const LlmBackendOptions& options,
-                                  AtLimit at_limit);
+/// Reads a pool of references; the one that comes along for an empty path.
+/// Errors: no such file, or what is wrong in it.
+Result<std::shared_ptr<const ReferencePool>> LoadReferences(
+    const std::string& path);
 
-/// Adds the command-line options of backend and method, with their defaults.
-/// Option `--method` is added too; `--backend` is the caller's.
-void AddLlmOptions(CLI::App& app, LlmBackendOptions& backend,
-                   MethodOptions& method);
-
-/// Adds only what shapes the question: method, switches, noise, seed.
-void AddPromptOptions(CLI::App& app, MethodOptions& method);
+/// What a case on the bus, or outside any dataset, is called: map_id, start and
+/// goal.
+std::string BusCaseId(std::int64_t map_id, Cell start, Cell goal);
 
 }  // namespace terra::advisor

@@ -28,7 +28,7 @@ const ReferencePair* ChooseReference(const PlanningCase& in,
 
 MethodOutcome Malformed(std::string cause, std::string detail) {
   MethodOutcome outcome;
-  outcome.kind = OutcomeKind::kMalformed;
+  outcome.kind = AnswerKind::kMalformed;
   outcome.cause = std::move(cause);
   outcome.detail = std::move(detail);
   return outcome;
@@ -157,8 +157,7 @@ MethodOutcome ReadReply(const PlanningCase& in, const MethodOptions& options,
   }
   MethodOutcome outcome;
   outcome.form = answer.form;
-  outcome.kind = answer.kind == AnswerKind::kRetain ? OutcomeKind::kRetain
-                                                    : OutcomeKind::kPropose;
+  outcome.kind = answer.kind;
   for (const AnswerCandidate& candidate : answer.candidates) {
     outcome.candidates.push_back(ReadCandidate(in, options.method, candidate));
   }

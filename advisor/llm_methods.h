@@ -49,14 +49,6 @@ PreparedCase PrepareCase(const PlanningCase& planning_case,
                          const MethodOptions& options,
                          const ReferencePool* pool);
 
-/// What a method's answer comes to, before verification.
-enum class OutcomeKind {
-  kNoAnswer,   ///< Nothing came; see reply.reason.
-  kMalformed,  ///< An attempt that is no route: empty, refused, unreadable.
-  kRetain,     ///< `advisor` only: the baseline stays, no attempt.
-  kPropose,    ///< candidates are to be verified.
-};
-
 /// One proposed route.
 struct OutcomeCandidate {
   /// Waypoints as answered (`advisor`, `direct`), or the cells of the joined
@@ -67,10 +59,12 @@ struct OutcomeCandidate {
   std::string fault;
 };
 
+/// What a method's answer comes to, before verification: kFailed when nothing
+/// came (see reply.reason), kRetain for `advisor` alone.
 struct MethodOutcome {
-  OutcomeKind kind = OutcomeKind::kNoAnswer;
-  AnswerForm form = AnswerForm::kTolerated;
-  /// Why, for kNoAnswer and kMalformed, in a word ("refused", "empty",
+  AnswerKind kind = AnswerKind::kFailed;
+  AnswerForm form = AnswerForm::kNone;  ///< Of what kRetain and kPropose read.
+  /// Why, for kFailed and kMalformed, in a word ("refused", "empty",
   /// "not_an_integer", "deadline"); empty otherwise.
   std::string cause;
   std::string detail;  ///< The same for people, with the position.

@@ -124,6 +124,7 @@ ordered_json ToJson(const MapParameters& p) {
       {"obstacles", ToJson(p.obstacles)},
       {"obstacle_short_side", ToJson(p.obstacle_short)},
       {"obstacle_long_side", ToJson(p.obstacle_long)},
+      {"obstacle_edge_distance", p.obstacle_edge_distance},
       {"end_margin", p.end_margin},
       {"end_distance", p.end_distance},
       {"strides_with_a_route", p.strides},
@@ -137,7 +138,7 @@ ordered_json ToJson(const MapParameters& p) {
 }
 
 ordered_json ToJson(const Rejections& r) {
-  return {{"polygon_overlaps", r.polygon_overlaps},
+  return {{"polygon_misplaced", r.polygon_misplaced},
           {"map_with_too_few_polygons", r.too_few_polygons},
           {"end_blocked", r.end_blocked},
           {"ends_too_close", r.ends_too_close},

@@ -2,6 +2,7 @@
 #include <span>
 #include <utility>
 
+#include "advisor/controls.h"
 #include "advisor/refiners.h"
 #include "benchmark/method.h"
 #include "benchmark/stopwatch.h"
@@ -11,6 +12,7 @@
 namespace terra::benchmark {
 namespace {
 
+using advisor::CampanaForm;
 using advisor::RefineInput;
 
 using Planner = std::function<Route(const MethodInput&)>;
@@ -31,17 +33,32 @@ RefineInput InputOf(const MethodInput& input) {
   return {input.map, input.baseline.waypoints, input.baseline.cost};
 }
 
+template <advisor::RefineOutput (*refine)(const RefineInput&)>
+Route Refined(const MethodInput& input) {
+  return refine(InputOf(input)).route;
+}
+
+template <CampanaForm form>
+Route Campana(const MethodInput& input) {
+  return advisor::RefineByCampana(InputOf(input), form).route;
+}
+
 // Backends of `advisor` that need no model.
 const std::vector<NamedPlanner>& Refiners() {
   static const std::vector<NamedPlanner> kRefiners = {
       {"search", "search (native optimum: upper bound, not a competitor)",
-       kGated, true,
+       kGated, true, Refined<advisor::RefineBySearch>},
+      {"shortcut", "shortcut (cost-gated all-pairs, perturbed)", kGated, true,
+       Refined<advisor::RefineByShortcut>},
+      {"app", "APP-style (after the abstract)", kGated, true,
+       Refined<advisor::RefineByAppStyle>},
+      {"campana", "Campana (length objective, keep-best)", kGated, true,
+       Campana<CampanaForm::kKeepBest>},
+      {"campana-terrain", "Campana (terrain-weighted, keep-best)", kGated, true,
+       Campana<CampanaForm::kTerrainWeighted>},
+      {"band", "band (corridor of 25 around the baseline)", kGated, true,
        [](const MethodInput& input) {
-         return advisor::RefineBySearch(InputOf(input)).route;
-       }},
-      {"shortcut", "shortcut (cost-gated, perturbed)", kGated, true,
-       [](const MethodInput& input) {
-         return advisor::RefineByShortcut(InputOf(input)).route;
+         return advisor::RefineByBand(InputOf(input)).route;
        }},
   };
   return kRefiners;
@@ -64,10 +81,20 @@ const std::vector<NamedPlanner>& PlainMethods() {
          return Route{};
        }},
       {"oracle", "native oracle (lower bound)", kGated, false, OracleRoute},
+      {"campana-last", "Campana (length objective, last iterate)", kAsReturned,
+       true, Campana<CampanaForm::kLastIterate>},
+      {"collision-shortcut", "control: collision-only shortcut", kAsReturned,
+       true, Refined<advisor::ShortcutWithoutCost>},
       {"straight-line", "control: straight line", kAsReturned, false,
+       Refined<advisor::StraightLine>},
+      {"corridor", "control: corridor of 25 around the baseline, no model",
+       kGated, true,
        [](const MethodInput& input) {
-         return Route{input.dataset_case.start, input.dataset_case.goal};
+         return advisor::RefineByBand(InputOf(input)).route;
        }},
+      {"blind-detours",
+       "control: straight line and two blind detours, polished, no model",
+       kGated, true, Refined<advisor::RefineByBlindDetours>},
   };
   return kMethods;
 }

@@ -197,6 +197,26 @@ TEST_F(DeployedPathTest, AdviceThroughAnObstacleChangesNothing) {
   EXPECT_EQ(verdict.fail_y, 60);
 }
 
+TEST_F(DeployedPathTest, AdviceBehindTheRobotIsLate) {
+  StartAll();
+  Ask(11);
+  ASSERT_TRUE(BaselineDeployed(11));
+  const deployed_t deployed = network_.Sent<deployed_t>().back();
+  terra_msg::pose_t pose{};
+  pose.session = 5;
+  pose.seq = 1;
+  pose.pose_x = kStart.x + 20;
+  pose.pose_y = kStart.y;
+  pose.deployed_session = deployed.session;
+  pose.deployed_route_seq = deployed.route_seq;
+  network_.Inject(pose);
+  network_.Run(milliseconds(50));
+  Advise(LastBaseline(), kAround, 1);
+  network_.Run(milliseconds(50));
+  EXPECT_EQ(network_.Sent<verdict_t>().back().code, verdict_t::CODE_LATE);
+  EXPECT_TRUE(Deployed(11, deployed_t::MODE_BASELINE));
+}
+
 TEST_F(DeployedPathTest, AnyOrderOfStartsEndsInService) {
   Ask(11);
   StartGate();

@@ -81,14 +81,15 @@ double DrivenRoute::CostFrom(const TerrainMap& map, int index) const {
 
 Route DrivenRoute::JoinAt(int index, const Route& tail) const {
   TERRA_REQUIRE(!tail.empty() && cell(index) == tail.front());
-  // The waypoints up to the anchor, then the corners from the last of them on.
+  // The waypoints up to the anchor, without repeated ones, so that padding does
+  // not use up the limit; then the corners from the last of them on.
   Route joined = {waypoints_.front()};
   std::int64_t at = 0;
   for (std::size_t i = 1; at < index; ++i) {
     const std::int64_t next =
         at + ChebyshevDistance(waypoints_[i - 1], waypoints_[i]);
     if (next > index) break;
-    joined.push_back(waypoints_[i]);
+    if (next > at) joined.push_back(waypoints_[i]);
     at = next;
   }
   if (at < index) {

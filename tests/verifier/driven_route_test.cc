@@ -156,6 +156,13 @@ TEST(DrivenRouteTest, JoiningInsideASegmentKeepsItsCells) {
   }
 }
 
+TEST(DrivenRouteTest, JoiningDropsRepeatedWaypoints) {
+  Route padded(2'000, Cell{0, 0});
+  padded.push_back({9, 0});
+  const DrivenRoute route = Driving(padded);
+  EXPECT_EQ(route.JoinAt(4, {{4, 0}, {9, 0}}), (Route{{0, 0}, {4, 0}, {9, 0}}));
+}
+
 TEST(DrivenRouteTest, PassedCellsCannotBeUsed) {
   DrivenRoute route = Driving({{0, 0}, {9, 0}});
   route.OnPose({4, 0});

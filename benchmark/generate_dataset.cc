@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "advisor/encoding.h"
 #include "benchmark/dataset_card.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
-#include "benchmark/sha256.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
 #include "terrain/files/csv.h"
@@ -53,7 +53,8 @@ Result<WrittenCase> WriteCase(const GeneratedCase& generated,
   const Result<std::string> bytes = ReadWholeFile(path, kMaxMapBytes);
   if (!bytes.ok()) return bytes.error();
   WrittenCase result{MapId(generated.map), generated.start, generated.goal, {}};
-  Sha256Hex(*bytes).copy(result.map_sha256.data(), result.map_sha256.size());
+  advisor::Sha256Hex(*bytes).copy(result.map_sha256.data(),
+                                  result.map_sha256.size());
   return result;
 }
 
@@ -106,7 +107,7 @@ CaseTable MakeCaseTable(const std::vector<WrittenSubset>& subsets) {
       lines += DigestLine(id, c.map_id, c.start, c.goal);
     }
   }
-  return {std::move(csv), Sha256Hex(lines)};
+  return {std::move(csv), advisor::Sha256Hex(lines)};
 }
 
 ordered_json ToJson(IntRange range) {
@@ -169,7 +170,7 @@ std::string Sums(const std::vector<std::pair<std::string, std::string>>& files,
                  const std::vector<WrittenSubset>& subsets) {
   std::string text;
   for (const auto& [name, content] : files) {
-    text += Sha256Hex(content) + "  " + name + "\n";
+    text += advisor::Sha256Hex(content) + "  " + name + "\n";
   }
   for (const WrittenSubset& subset : subsets) {
     for (int i = 0; i < static_cast<int>(subset.cases.size()); ++i) {

@@ -9,11 +9,11 @@
 #include <set>
 #include <utility>
 
+#include "advisor/encoding.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
 #include "benchmark/results_file.h"
 #include "benchmark/run_description.h"
-#include "benchmark/sha256.h"
 #include "benchmark/stopwatch.h"
 #include "terrain/digest.h"
 #include "terrain/files/whole_file.h"
@@ -295,7 +295,7 @@ Result<std::string> DatasetDigest(const Dataset& dataset) {
   const Result<std::string> cases = ReadWholeFile(
       (fs::path(dataset.folder) / "cases.csv").string(), kMaxTableBytes);
   if (!cases.ok()) return cases.error();
-  return "cases.csv:" + Sha256Hex(*cases);
+  return "cases.csv:" + advisor::Sha256Hex(*cases);
 }
 
 Status RunMethods(const Dataset& dataset, const RunOptions& options,

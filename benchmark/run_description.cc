@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/utsname.h>
 
+#include "advisor/encoding.h"
 #include "benchmark/parallel.h"
-#include "benchmark/sha256.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
@@ -42,7 +42,7 @@ std::string MachineText() {
 std::string CaseListDigest(const std::vector<std::string>& ids) {
   std::string text;
   for (const std::string& id : ids) text += id + "\n";
-  return Sha256Hex(text);
+  return advisor::Sha256Hex(text);
 }
 
 // What decides the figures.

@@ -20,6 +20,7 @@ void AddBenchCommand(CLI::App& app, int& exit_code) {
       "  terra bench report --runs runs/shortcut --out report");
   AddBenchGenerate(bench, exit_code);
   AddBenchGap(bench, exit_code);
+  AddBenchReferences(bench, exit_code);
 }
 
 void AddJobsOption(CLI::App& command, int& jobs) {

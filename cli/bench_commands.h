@@ -14,6 +14,7 @@ namespace terra::cli {
 /// own bench_<name>.cc.
 void AddBenchGenerate(CLI::App& bench, int& exit_code);
 void AddBenchGap(CLI::App& bench, int& exit_code);
+void AddBenchReferences(CLI::App& bench, int& exit_code);
 
 /// Adds --jobs: threads to use, 0 = all cores.
 void AddJobsOption(CLI::App& command, int& jobs);

@@ -29,7 +29,7 @@ class Reduction {
         })) {}
 
   // From the start: to the farthest cell that a straight segment reaches
-  // cheaper than the route does, else to the next one.
+  // cheaper than the route does, else some cells along the route.
   Route Forward(const std::stop_token& stop) const {
     Route kept = {cells_.front()};
     const std::size_t end = cells_.size() - 1;
@@ -38,8 +38,11 @@ class Reduction {
       while (to > at + kSpacing && !stop.stop_requested() && !Cheaper(at, to)) {
         to -= kSpacing;
       }
-      at = Cheaper(at, to) ? to : at + 1;
-      kept.push_back(cells_[at]);
+      if (!Cheaper(at, to)) {
+        for (; at + 1 < to; ++at) kept.push_back(cells_[at + 1]);
+      }
+      kept.push_back(cells_[to]);
+      at = to;
     }
     return kept;
   }
@@ -52,8 +55,11 @@ class Reduction {
       while (to + kSpacing < at && !stop.stop_requested() && !Cheaper(to, at)) {
         to += kSpacing;
       }
-      at = Cheaper(to, at) ? to : at - 1;
-      kept.push_back(cells_[at]);
+      if (!Cheaper(to, at)) {
+        for (; at > to + 1; --at) kept.push_back(cells_[at - 1]);
+      }
+      kept.push_back(cells_[to]);
+      at = to;
     }
     std::reverse(kept.begin(), kept.end());
     return kept;
@@ -61,11 +67,8 @@ class Reduction {
 
  private:
   bool Cheaper(std::size_t from, std::size_t to) const {
-    const double limit = prefix_[to] - prefix_[from] - kGain;
-    const double bound =
-        map_.costs().min_cost() *
-        static_cast<double>(ChebyshevDistance(cells_[from], cells_[to]));
-    return bound < limit && SegmentCost(map_, cells_[from], cells_[to]) < limit;
+    return SegmentCostBelow(map_, cells_[from], cells_[to],
+                            prefix_[to] - prefix_[from] - kGain) < kImpassable;
   }
 
   const TerrainMap& map_;

@@ -25,17 +25,18 @@ Route ShortcutOver(const TerrainMap& map, const Route& points,
   cost[0] = 0;
   for (std::size_t to = 1; to < n; ++to) {
     if (stop.stop_requested()) return points;
-    for (std::size_t at = 0; at < to; ++at) {
-      // Nothing is cheaper than the lowest cost along the Chebyshev distance.
-      const double bound = cost[at] + map.costs().min_cost() *
-                                          static_cast<double>(ChebyshevDistance(
-                                              points[at], points[to]));
-      if (bound >= cost[to]) continue;
-      const double total = cost[at] + SegmentCost(map, points[at], points[to]);
-      if (total < cost[to]) {
-        cost[to] = total;
-        from[to] = at;
-      }
+    // The way over the point before bounds what is worth looking at; as good as
+    // that is good enough for a longer segment, which saves waypoints.
+    cost[to] = cost[to - 1] + SegmentCost(map, points[to - 1], points[to]);
+    from[to] = to - 1;
+    double limit = cost[to] + kGain;
+    for (std::size_t at = 0; at + 1 < to; ++at) {
+      const double segment =
+          SegmentCostBelow(map, points[at], points[to], limit - cost[at]);
+      if (segment == kImpassable) continue;
+      cost[to] = cost[at] + segment;
+      from[to] = at;
+      limit = cost[to] - kGain;
     }
   }
   TERRA_REQUIRE(cost[n - 1] < kImpassable);
@@ -68,13 +69,16 @@ RefineOutput RefineBySearch(const RefineInput& input) {
 }
 
 RefineOutput RefineByShortcut(const RefineInput& input) {
-  constexpr int kPointSpacing = 6;  // Cells between the points of a shortcut.
-  constexpr int kRounds = 4;
+  // Cells between the points of a shortcut, and between waypoints that move.
+  constexpr int kPointSpacing = 4;
+  constexpr int kMoveSpacing = 24;
+  constexpr int kRounds = 8;
   Route route = input.baseline;
   double cost = input.baseline_cost;
   for (int round = 0; round < kRounds; ++round) {
-    Route next =
-        ShortcutOver(input.map, Densify(route, kPointSpacing), input.stop);
+    Route next = Densify(
+        ShortcutOver(input.map, Densify(route, kPointSpacing), input.stop),
+        kMoveSpacing);
     if (input.stop.stop_requested()) break;
     PerturbWaypoints(input.map, next, input.stop);
     const double next_cost = WalkRoute(input.map, next).cost;
@@ -82,7 +86,9 @@ RefineOutput RefineByShortcut(const RefineInput& input) {
     route = std::move(next);
     cost = next_cost;
   }
-  return {std::move(route), cost};
+  return Cheaper(input, ThinWaypoints(route, [&](Cell from, Cell to) {
+                   return SegmentCost(input.map, from, to);
+                 }));
 }
 
 RefineOutput RefineByBand(const RefineInput& input, int half_width) {

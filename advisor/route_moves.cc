@@ -1,41 +1,72 @@
 #include "advisor/route_moves.h"
 
+#include <algorithm>
+#include <cstdlib>
+#include <numbers>
+
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
 
 namespace terra::advisor {
 namespace {
 
+// A lower bound of every route between two cells.
+double LowerBound(const TerrainMap& map, Cell from, Cell to) {
+  const int dx = std::abs(to.x - from.x);
+  const int dy = std::abs(to.y - from.y);
+  return map.costs().min_cost() *
+         (std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy));
+}
+
 // Returns the cheapest place for a waypoint among its own and the 8 at a
 // distance of `step` around it.
 Cell BestPlace(const TerrainMap& map, Cell before, Cell at, Cell after,
                int step) {
-  const auto cost_via = [&](Cell c) {
-    const double there = SegmentCost(map, before, c);
-    return there == kImpassable ? there : there + SegmentCost(map, c, after);
-  };
   Cell best = at;
-  double best_cost = cost_via(at);
+  double best_cost = SegmentCost(map, before, at) + SegmentCost(map, at, after);
   for (const int dx : {-step, 0, step}) {
     for (const int dy : {-step, 0, step}) {
       const Cell c{at.x + dx, at.y + dy};
       if (c == at || !map.Contains(c)) continue;
-      // Nothing is cheaper than the lowest cost along the Chebyshev distances.
-      const double bound = map.costs().min_cost() *
-                           static_cast<double>(ChebyshevDistance(before, c) +
-                                               ChebyshevDistance(c, after));
-      if (bound >= best_cost - kGain) continue;
-      const double cost = cost_via(c);
-      if (cost < best_cost - kGain) {
-        best_cost = cost;
-        best = c;
-      }
+      const double limit = best_cost - kGain;
+      const double there =
+          SegmentCostBelow(map, before, c, limit - LowerBound(map, c, after));
+      if (there == kImpassable) continue;
+      const double on = SegmentCostBelow(map, c, after, limit - there);
+      if (on == kImpassable) continue;
+      best_cost = there + on;
+      best = c;
     }
   }
   return best;
 }
 
 }  // namespace
+
+double SegmentCostBelow(const TerrainMap& map, Cell from, Cell to,
+                        double limit) {
+  if (!map.Passable(from)) return kImpassable;
+  const bool cut_corners = map.cost_model().corner_cutting;
+  const double min_cost = map.costs().min_cost();
+  // A segment has as many diagonal steps as a path can have, so the bound is
+  // its cost if every cell were of the cheapest terrain.
+  double cost = LowerBound(map, from, to);
+  for (SegmentCells cells(from, to); cost < limit;) {
+    if (cells.done()) return cost;
+    const Cell last = cells.cell();
+    cells.Next();
+    const Cell next = cells.cell();
+    if (!map.Passable(next)) return kImpassable;
+    const bool diagonal = last.x != next.x && last.y != next.y;
+    if (diagonal && !cut_corners &&
+        (!map.Passable({last.x, next.y}) || !map.Passable({next.x, last.y}))) {
+      return kImpassable;
+    }
+    const double more = map.Cost(next) - min_cost;
+    cost += diagonal ? std::numbers::sqrt2 * more : more;
+  }
+  return kImpassable;
+}
 
 Route Densify(const Route& route, int spacing) {
   const auto step = static_cast<std::size_t>(spacing);

@@ -16,6 +16,13 @@ inline constexpr double kGain = 1e-9;
 /// be used; SegmentCost, or something stricter.
 using SegmentCostFunction = std::function<double(Cell from, Cell to)>;
 
+/// Returns SegmentCost where that is below the limit, else kImpassable: looks
+/// at no more of a segment than it takes to know. Sums in doubles, so the last
+/// bits may differ from SegmentCost.
+/// Pre: both ends inside the map.
+double SegmentCostBelow(const TerrainMap& map, Cell from, Cell to,
+                        double limit);
+
 /// Returns the waypoints and every `spacing`-th cell of the raster between
 /// them. The short segments between these may visit other cells than the long
 /// ones did. Successive repetitions are left out, but there are two points at

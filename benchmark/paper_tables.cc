@@ -445,10 +445,12 @@ Table PairedTable(const std::vector<LoadedRun>& runs,
           ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
                         others, reference.description.rule);
       if (c.cases == 0) continue;
-      block.rows.push_back(
-          {RowTitle(runs[i]), CountCell(c.cases), CountCell(c.only_first_lower),
-           CountCell(c.only_second_lower), NumberCell(c.mcnemar_p, 4),
-           PercentCell(c.mogr_difference)});
+      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
+                            CountCell(c.only_first_lower),
+                            CountCell(c.only_second_lower),
+                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
+                                               : NumberCell(c.mcnemar_p, 4),
+                            PercentCell(c.mogr_difference)});
     }
   }
   table.blocks.push_back(std::move(block));

@@ -70,10 +70,10 @@ struct DotRow {
   bool control = false;
 };
 
-// The title up to its remarks in brackets, to fit beside the plot.
+// The title, cut to fit beside the plot.
 std::string ShortTitle(const LoadedRun& run) {
   std::string title = RowTitle(run);
-  if (title.size() > 52) title = title.substr(0, 50) + "…";
+  if (title.size() > 46) title = title.substr(0, 44) + "…";
   return title;
 }
 

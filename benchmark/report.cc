@@ -69,6 +69,17 @@ bool SameCases(const LoadedRun& a, const LoadedRun& b) {
          a.description.case_list_digest == b.description.case_list_digest;
 }
 
+// The order of rows: baseline, models, refiners, methods as they return, then
+// controls, then the bounds that no method passes.
+int RowRank(const LoadedRun& run) {
+  const RunDescription& d = run.description;
+  if (d.method == "coarse") return 0;
+  if (d.asks_model) return 1;
+  if (d.method == "advisor") return d.backend == "search" ? 5 : 2;
+  if (d.method == "oracle") return 6;
+  return d.title.rfind("control", 0) == 0 ? 4 : 3;
+}
+
 // Which run stands in which table.
 struct Selection {
   std::vector<LoadedRun> comparison;
@@ -279,6 +290,10 @@ Status WriteReport(const ReportOptions& options) {
       return run.description.simulated;
     });
   }
+  std::stable_sort(runs->begin(), runs->end(),
+                   [](const LoadedRun& a, const LoadedRun& b) {
+                     return RowRank(a) < RowRank(b);
+                   });
   return ReportWriter(options).Write(*runs);
 }
 

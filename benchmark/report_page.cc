@@ -17,7 +17,7 @@ constexpr std::string_view kStyle = R"(
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);
 font:15px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-main,header,nav{max-width:1180px;margin:0 auto;padding:0 24px}
+main,header,nav{max-width:1240px;margin:0 auto;padding:0 24px}
 header{padding-top:40px}
 h1{font-size:30px;line-height:1.2;margin:0 0 8px}
 h2{font-size:21px;margin:48px 0 6px;padding-top:12px;border-top:1px solid var(--line)}
@@ -35,8 +35,8 @@ figure.plot figcaption{font-weight:400;color:var(--soft);font-size:13px}
 figure.plot svg{width:100%;max-width:820px;height:auto}
 .scroll{overflow-x:auto;border:1px solid var(--line);border-radius:8px}
 table{border-collapse:collapse;width:100%;font-size:13px;font-variant-numeric:tabular-nums}
-th,td{padding:6px 10px;text-align:right;border-bottom:1px solid var(--line);vertical-align:top}
-tr>*:first-child{text-align:left;font-weight:500;max-width:330px}
+th,td{padding:6px 8px;text-align:right;border-bottom:1px solid var(--line);vertical-align:top}
+tr>*:first-child{text-align:left;font-weight:500;min-width:190px;max-width:330px}
 thead th{background:var(--band);font-weight:600;white-space:nowrap;position:sticky;top:0}
 tbody:last-child tr:last-child>*{border-bottom:0}
 tr.heading th{background:var(--band);color:var(--soft);font-weight:600;font-size:12px;max-width:none}

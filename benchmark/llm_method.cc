@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "advisor/answer_parser.h"
 #include "advisor/llm_methods.h"
 #include "advisor/polish.h"
 #include "advisor/prompt.h"
+#include "benchmark/single_search.h"
 #include "benchmark/stopwatch.h"
 
 namespace terra::benchmark {
@@ -58,11 +60,11 @@ void KeepReply(const advisor::LlmReply& reply, Attempt& attempt) {
 class LlmMethod : public Method {
  public:
   LlmMethod(advisor::LlmService service, const MethodOptions& options,
-            Pool pool, bool polish)
+            Pool pool, const LlmMethodForm& form)
       : service_(std::move(service)),
         options_(options),
         pool_(std::move(pool)),
-        polish_(polish) {}
+        form_(form) {}
 
   Attempt Try(const MethodInput& input) override {
     const DatasetCase& c = input.dataset_case;
@@ -98,10 +100,14 @@ class LlmMethod : public Method {
         advisor::ReadReply(planning_case, options_, reply);
     attempt.kind = KindOf(outcome.kind);
     attempt.form = StyleOf(outcome.form);
+    if (form_.single_search && attempt.kind == AttemptKind::kPropose) {
+      attempt.candidates.push_back(SearchOnce(planning_case, reply));
+      return;
+    }
     for (const advisor::OutcomeCandidate& candidate : outcome.candidates) {
       // A candidate that could not be read has no route: too few waypoints.
       Route route = candidate.route;
-      if (polish_ && !route.empty()) {
+      if (form_.polish && !route.empty()) {
         route = advisor::Polish(
                     {input.map, input.baseline.waypoints, input.baseline.cost},
                     route)
@@ -111,34 +117,51 @@ class LlmMethod : public Method {
     }
   }
 
+  // Meng's form forgives targets that cannot be reached, so it takes them as
+  // they were answered.
+  static Route SearchOnce(const PlanningCase& planning_case,
+                          const advisor::LlmReply& reply) {
+    advisor::AnswerRules rules;
+    rules.style = advisor::AnswerStyle::kRoute;
+    const advisor::Answer answer = advisor::ParseAnswer(reply.text, rules);
+    if (answer.candidates.empty()) return {};
+    return SingleTargetedSearch(planning_case.map, planning_case.start,
+                                planning_case.goal,
+                                answer.candidates.front().waypoints);
+  }
+
   advisor::LlmService service_;
   MethodOptions options_;
   Pool pool_;
-  bool polish_;
+  LlmMethodForm form_;
 };
 
-std::string TitleOf(advisor::Method method) {
+std::string TitleOf(advisor::Method method, bool single_search) {
   switch (method) {
     case advisor::Method::kAdvisor:
       return "LLM-Advisor";
     case advisor::Method::kDirect:
       return "Direct LLM";
     case advisor::Method::kLlmAstar:
-      return "LLM-A* (leg by leg)";
+      return single_search ? "LLM-A* (original single search)"
+                           : "LLM-A* (leg by leg)";
   }
   return "";
 }
 
 MethodInfo InfoOf(const advisor::LlmBackendOptions& options,
-                  const advisor::LlmIdentity& identity, bool polish,
-                  bool gate) {
+                  const advisor::LlmIdentity& identity,
+                  const LlmMethodForm& form) {
   const bool advisor = options.method.method == advisor::Method::kAdvisor;
   MethodInfo info;
-  info.method = std::string(advisor::MethodName(options.method.method));
+  info.method = std::string(advisor::MethodName(options.method.method)) +
+                (form.single_search ? "-single" : "");
   info.backend = options.service.backend;
-  info.title = TitleOf(options.method.method) + (polish ? " + polish" : "") +
-               (gate && !advisor ? " + gate" : "");
-  info.rule = {.fallback = advisor || gate, .every_case_attempts = !advisor};
+  info.title = TitleOf(options.method.method, form.single_search) +
+               (form.polish ? " + polish" : "") +
+               (form.gate && !advisor ? " + gate" : "");
+  info.rule = {.fallback = advisor || form.gate,
+               .every_case_attempts = !advisor};
   info.uses_baseline = info.rule.fallback;
   info.asks_model = true;
   info.simulated = identity.endpoint_class == "loopback";
@@ -172,7 +195,7 @@ std::string SettingsJson(const MethodOptions& options,
 }  // namespace
 
 Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
-                                      bool polish, bool gate) {
+                                      const LlmMethodForm& form) {
   Result<advisor::LlmService> service =
       advisor::MakeLlmService(options.service, advisor::AtLimit::kWait);
   if (!service.ok()) return service.error();
@@ -185,15 +208,16 @@ Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
   }
   const advisor::LlmIdentity identity = service->client->identity();
   LlmMethodChoice made;
-  made.settings_json = SettingsJson(options.method, identity, pool, polish);
-  made.choice.info = InfoOf(options, identity, polish, gate);
+  made.settings_json =
+      SettingsJson(options.method, identity, pool, form.polish);
+  made.choice.info = InfoOf(options, identity, form);
   // The one client goes to whoever makes the method first.
   auto held = std::make_shared<advisor::LlmService>(*std::move(service));
   made.choice.make = [held, method = options.method, pool,
-                      polish]() -> Result<std::unique_ptr<Method>> {
+                      form]() -> Result<std::unique_ptr<Method>> {
     TERRA_REQUIRE(held->client != nullptr);  // One at a time, --jobs 1.
     return std::unique_ptr<Method>(
-        std::make_unique<LlmMethod>(std::move(*held), method, pool, polish));
+        std::make_unique<LlmMethod>(std::move(*held), method, pool, form));
   };
   return made;
 }

@@ -14,15 +14,21 @@ struct LlmMethodChoice {
   std::string settings_json;
 };
 
+/// What is made of the answers.
+struct LlmMethodForm {
+  /// Every candidate of `advisor` is made the best of inside its corridor
+  /// before it is verified; a Yes stays a Yes.
+  bool polish = false;
+  bool gate = false;  ///< As FindDeterministicMethod.
+  /// `llm-astar` in its original form: SingleTargetedSearch instead of legs.
+  bool single_search = false;
+};
+
 /// Returns `advisor`, `direct` or `llm-astar` with a backend of a model (a
 /// provider, a recording, a person). Rate and spend limits pause a run; they
 /// never fail a case. Calls go one at a time, so the method is made only once.
-///
-/// `polish`: every candidate of `advisor` is made the best of inside its
-/// corridor before it is verified; a Yes stays a Yes.
-/// `gate`: as FindDeterministicMethod.
 /// Errors: as advisor::MakeLlmService and LoadReferences.
 Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
-                                      bool polish, bool gate);
+                                      const LlmMethodForm& form);
 
 }  // namespace terra::benchmark

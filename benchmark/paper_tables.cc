@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/paper_rows.h"
+#include "terrain/files/csv.h"
 
 namespace terra::benchmark {
 namespace {
@@ -102,6 +103,7 @@ std::string SettingOf(const LoadedRun& run, const std::string& name,
   const auto settings = nlohmann::json::parse(run.description.settings_json);
   const auto found = settings.find(name);
   if (found == settings.end()) return otherwise;
+  if (found->is_number()) return FormatNumber(found->get<double>());
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 

@@ -88,7 +88,33 @@ struct Selection {
   std::vector<LoadedRun> rugd;
   std::vector<LoadedRun> latency;
   std::vector<LoadedRun> models;  ///< Ablation and noise.
+  /// Sets of comparable runs that stand in no table above.
+  std::vector<std::vector<LoadedRun>> others;
 };
+
+// Parts the runs that no other table has into sets of comparable ones.
+std::vector<std::vector<LoadedRun>> SelectOthers(
+    const std::vector<LoadedRun>& runs, const Selection& s) {
+  std::set<std::string> shown;
+  for (const auto* table :
+       {&s.comparison, &s.gap, &s.joints, &s.rugd, &s.latency}) {
+    for (const LoadedRun& run : *table) shown.insert(run.folder);
+  }
+  std::vector<std::vector<LoadedRun>> others;
+  for (const LoadedRun& run : runs) {
+    if (shown.contains(run.folder)) continue;
+    const auto set = std::find_if(
+        others.begin(), others.end(), [&](const std::vector<LoadedRun>& o) {
+          return WhyNotComparable(o.front(), run).empty();
+        });
+    if (set == others.end()) {
+      others.push_back({run});
+    } else {
+      set->push_back(run);
+    }
+  }
+  return others;
+}
 
 Selection SelectRuns(const std::vector<LoadedRun>& runs) {
   Selection s;
@@ -106,7 +132,10 @@ Selection SelectRuns(const std::vector<LoadedRun>& runs) {
   s.models = Select(runs, [](const LoadedRun& run) {
     return IsGenerated(run) && run.description.asks_model;
   });
-  if (s.comparison.empty()) return s;
+  if (s.comparison.empty()) {
+    s.others = SelectOthers(runs, s);
+    return s;
+  }
   const LoadedRun& main = s.comparison.front();
   s.gap = Select(plain, [&](const LoadedRun& run) {
     return SameCases(run, main) && run.description.method == "advisor" &&
@@ -115,6 +144,7 @@ Selection SelectRuns(const std::vector<LoadedRun>& runs) {
   s.joints = Select(plain, [&](const LoadedRun& run) {
     return SameCases(run, main) && run.description.stride == kPaperStride;
   });
+  s.others = SelectOthers(runs, s);
   return s;
 }
 
@@ -143,6 +173,7 @@ class ReportWriter {
                   "Semantic masks of camera frames as cost rasters: how the "
                   "methods transfer.");
     Add(RugdTable(s.rugd));
+    Others(s.others);
     const Status pictures = Pictures(s);
     if (!pictures.ok()) return pictures.error();
     page_.Section("What produced these figures", "");
@@ -205,6 +236,27 @@ class ReportWriter {
     Add(OracleGapTable(s.gap));
     Plot("gap-by-stride", "Mean gap by lattice stride.", GapPlot(s.gap));
     Add(JointsTable(s.joints));
+  }
+
+  void Others(const std::vector<std::vector<LoadedRun>>& others) {
+    if (others.empty()) return;
+    page_.Section("Other runs",
+                  "Runs that stand in no table above: other datasets, case "
+                  "lists, strides or switches. Recordings for tests are among "
+                  "them; their README says what they are.");
+    int number = 0;
+    for (const std::vector<LoadedRun>& set : others) {
+      for (const std::string& group : GroupsOf(set.front())) {
+        Table table = ProposalTable(set, group);
+        table.id = "other-" + std::to_string(++number);
+        const RunDescription& d = set.front().description;
+        table.title =
+            (d.dataset_name.empty() ? "Unnamed dataset" : d.dataset_name) +
+            (group.empty() ? "" : ", " + group) + ", stride " +
+            std::to_string(d.stride) + ", joints " + d.joints;
+        Add(table);
+      }
+    }
   }
 
   Status Pictures(const Selection& s) {

@@ -19,9 +19,9 @@ struct ReportOptions {
 /// Writes the whole report: tables/*.csv, *.md and *.tex, figures/*.svg and
 /// *.png, and report.html, one file without any link that opens anywhere.
 ///
-/// Every table takes the runs that can stand in it together; report.html says
-/// which run stands in none. Simulated runs stay out of the paper's tables
-/// unless asked for.
+/// Every table takes the runs that can stand in it together; those that stand
+/// in none have tables of their own at the end. Simulated runs stay out of the
+/// paper's tables unless asked for.
 Status WriteReport(const ReportOptions& options);
 
 }  // namespace terra::benchmark

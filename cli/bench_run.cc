@@ -93,18 +93,20 @@ Result<MethodRun> ChooseMethod(const RunArguments& arguments,
     if (!choice.ok()) return choice.error();
     return MethodRun{*std::move(choice), folder, "{}"};
   }
-  const auto method = advisor::FindMethod(arguments.method);
+  const bool single_search = arguments.method == "llm-astar-single";
+  const auto method =
+      advisor::FindMethod(single_search ? "llm-astar" : arguments.method);
   if (!method) {
     return Error{ErrorCode::kInvalid,
-                 "a model is asked by method advisor, direct or llm-astar, not "
-                 "by " +
+                 "a model is asked by method advisor, direct, llm-astar or "
+                 "llm-astar-single, not by " +
                      arguments.method};
   }
   advisor::LlmBackendOptions options = arguments.llm;
   options.service.backend = backend;
   options.method.method = *method;
-  auto made =
-      benchmark::MakeLlmMethod(options, arguments.polish, arguments.gate);
+  auto made = benchmark::MakeLlmMethod(
+      options, {arguments.polish, arguments.gate, single_search});
   if (!made.ok()) return made.error();
   return MethodRun{std::move(made->choice), folder,
                    std::move(made->settings_json)};

@@ -83,6 +83,38 @@ TEST_F(BenchCommand, KilledAgainAndAgainARunLosesAndRepeatsNoCase) {
   EXPECT_EQ(Results("killed"), Results("whole"));
 }
 
+TEST_F(BenchCommand, TheTasksOfASlurmArrayMakeTheRunInOnePiece) {
+  ASSERT_EQ(RunToEnd(RunArguments("whole")).exit_code, 0);
+  std::vector<std::string> merge = {terra_, "bench", "merge", "--out",
+                                    folder_.Path("merged")};
+  for (const std::string task : {"1", "2", "3"}) {
+    // What Slurm gives to each task of the array.
+    const RunResult ran = RunToEnd(
+        {"/usr/bin/env", "TERRA=" + terra_, "RUN_OUT=" + folder_.Path("merged"),
+         "SLURM_ARRAY_TASK_ID=" + task, "SLURM_ARRAY_TASK_COUNT=3",
+         TERRA_SCRIPTS "/bench-slurm", "--dataset", folder_.Path("data"),
+         "--method", "advisor", "--backend", "shortcut"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.output;
+    merge.push_back(folder_.Path("merged.shards/" + task));
+  }
+  const RunResult merged = RunToEnd(merge);
+  ASSERT_EQ(merged.exit_code, 0) << merged.output;
+  EXPECT_EQ(Results("merged"), Results("whole"));
+}
+
+TEST_F(BenchCommand, GnuParallelMakesTheRunInOnePiece) {
+  if (RunToEnd({"/bin/sh", "-c", "command -v parallel"}).exit_code != 0) {
+    GTEST_SKIP() << "needs GNU Parallel (apt-get install parallel)";
+  }
+  ASSERT_EQ(RunToEnd(RunArguments("whole")).exit_code, 0);
+  const RunResult ran = RunToEnd(
+      {"/usr/bin/env", "TERRA=" + terra_, "RUN_OUT=" + folder_.Path("merged"),
+       "SHARDS=3", TERRA_SCRIPTS "/bench-parallel", "--dataset",
+       folder_.Path("data"), "--method", "advisor", "--backend", "shortcut"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_EQ(Results("merged"), Results("whole"));
+}
+
 TEST_F(BenchCommand, AReportOpensWithoutAnyOtherFile) {
   ASSERT_EQ(RunToEnd(RunArguments("runs/shortcut")).exit_code, 0);
   const RunResult made = RunToEnd(

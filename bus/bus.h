@@ -1,0 +1,76 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bus/channels.h"
+#include "bus/inbox.h"
+#include "bus/transport.h"
+#include "terrain/result.h"
+
+struct _lcm_t;
+struct _lcm_recv_buf_t;
+
+namespace terra::bus {
+
+/// One LCM bus: opens it with checks, publishes, and receives in a thread that
+/// does nothing but fill inboxes.
+///
+/// Errors: a bus that cannot work at all (no multicast route, busy port,
+///         firewall) is an Error that says what to do. A route that is lost
+///         later is not: publishes fail, are counted, and work again when it
+///         comes back.
+/// Threads: Publish from any thread; the rest from the thread that made it.
+class Bus : public Transport {
+ public:
+  /// Counts since the start; any thread may read them.
+  struct Counters {
+    std::atomic<std::int64_t> sent{0};
+    std::atomic<std::int64_t> send_failed{0};
+    std::atomic<std::int64_t> received{0};
+    std::atomic<std::int64_t> oversized{0};
+  };
+
+  static Result<std::unique_ptr<Bus>> Open(const std::string& url,
+                                           ChannelNames names);
+  ~Bus() override;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// Receives these channels into an inbox, which must outlive the bus. To be
+  /// called once. With memq:// what this bus publishes comes back to it.
+  Status Listen(std::span<const Channel> channels, Inbox& inbox);
+
+  /// Refuses messages above kMaxMessageBytes.
+  bool Publish(Channel channel, std::span<const std::uint8_t> bytes) override;
+
+  const std::string& url() const { return url_; }
+  const Counters& counters() const { return counters_; }
+
+ private:
+  struct Subscription {
+    Bus* bus;
+    Channel channel;
+  };
+
+  Bus(std::string url, ChannelNames names, _lcm_t* lcm);
+  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
+                        void* subscription) noexcept;
+  void Receive();
+
+  std::string url_;
+  ChannelNames names_;
+  _lcm_t* lcm_;
+  Counters counters_;
+  std::vector<std::unique_ptr<Subscription>> subscriptions_;
+  Inbox* inbox_ = nullptr;
+  int stop_fd_ = -1;
+  std::thread receiver_;
+};
+
+}  // namespace terra::bus

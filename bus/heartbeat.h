@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "bus/bus.h"
+#include "bus/envelope.h"
+#include "bus/node.h"
+
+namespace terra::bus {
+
+/// Tells bus, log and service manager how a process is.
+class Heartbeat {
+ public:
+  /// `config` is what --print-config prints.
+  Heartbeat(std::string name, std::string config, Outbox& out, const Bus& bus,
+            const Inbox& inbox);
+
+  /// Sends STATUS; logs a state or error that changed; feeds the watchdog of
+  /// systemd where there is one (sd_notify(3) protocol).
+  void SendStatus(const Node& node);
+  void SendConfig();
+
+ private:
+  std::string name_;
+  std::string config_;
+  std::string host_;
+  Outbox& out_;
+  const Bus& bus_;
+  const Inbox& inbox_;
+  std::string logged_state_;
+  std::string logged_error_;
+};
+
+/// Sends one sd_notify(3) line, as "READY=1"; nothing where there is no
+/// NOTIFY_SOCKET.
+void NotifyServiceManager(const std::string& line);
+
+}  // namespace terra::bus

@@ -1,0 +1,137 @@
+#include "bus/process.h"
+
+#include <iostream>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "bus/build_id.h"
+#include "bus/heartbeat.h"
+#include "bus/lcm_url.h"
+#include "bus/log.h"
+
+namespace terra::bus {
+namespace {
+
+constexpr int kCouldNot = 1;
+constexpr int kWrongUsage = 2;
+constexpr Duration kConfigPeriod = std::chrono::seconds(5);
+
+// An error that ends the program, said once.
+int Fail(const std::string& message) {
+  LogError(message);
+  return kCouldNot;
+}
+
+int Serve(const ProcessSpec& spec, const std::string& name,
+          const BusOptions& options, const std::string& config) {
+  const StopSignal stop;  // before any thread
+  const Result<ChannelNames> channels = options.Channels();
+  if (!channels) {
+    LogError(channels.error().message);
+    return kWrongUsage;
+  }
+  Inbox inbox;
+  Result<std::unique_ptr<Bus>> opened = Bus::Open(options.lcm_url, *channels);
+  if (!opened) return Fail(opened.error().message);
+  const std::unique_ptr<Bus> bus = *std::move(opened);
+  Outbox out(*bus, RandomId());
+  EventLoop loop(inbox, stop);
+  ProcessContext context{options, *channels, name, out, inbox, loop};
+  Result<std::unique_ptr<Node>> made = spec.make_node(context);
+  if (!made) return Fail(made.error().message);
+  const std::unique_ptr<Node> node = *std::move(made);
+  if (!node->channels().empty()) {
+    const Status listening = bus->Listen(node->channels(), inbox);
+    if (!listening) return Fail(listening.error().message);
+  }
+  Heartbeat heartbeat(name, config, out, *bus, inbox);
+  loop.Every(kSlowPeriod, [&](Time) {
+    heartbeat.SendStatus(*node);
+  });
+  loop.Every(kConfigPeriod, [&](Time) {
+    heartbeat.SendConfig();
+  });
+  NotifyServiceManager("READY=1");
+  loop.Run(*node);
+  NotifyServiceManager("STOPPING=1");
+  return node->exit_code();
+}
+
+}  // namespace
+
+Status BusOptions::Complete() {
+  lcm_url = EffectiveLcmUrl(lcm_url);
+  if (advice_url.empty()) {
+    Result<std::string> derived = AdviceUrlFor(lcm_url);
+    if (!derived) return derived.error();
+    advice_url = *std::move(derived);
+  }
+  for (const std::string& url : {lcm_url, advice_url}) {
+    const Result<LcmUrl> parsed = ParseLcmUrl(url);
+    if (!parsed) return parsed.error();
+  }
+  return Done{};
+}
+
+Result<ChannelNames> BusOptions::Channels() const {
+  return ChannelNames::Create(robot, map_prefix);
+}
+
+void AddBusOptions(CLI::App& app, BusOptions& options) {
+  app.add_option("--lcm-url", options.lcm_url,
+                 "the deployed bus (default: LCM_DEFAULT_URL, else " +
+                     std::string(kDefaultLcmUrl) + ")");
+  app.add_option("--advice-url", options.advice_url,
+                 "the advice bus (default: --lcm-url with its port plus one)");
+  app.add_option("--robot", options.robot,
+                 "puts NAME_ in front of every channel (A-Z, 0-9)");
+  app.add_option("--map-prefix", options.map_prefix,
+                 "does so for the map channels (default: the robot's)");
+}
+
+int RunProcess(const ProcessSpec& spec, int argc, char** argv) {
+  SetLogName(spec.program);
+  CLI::App app(spec.description, spec.program);
+  app.option_defaults()->always_capture_default();
+  BusOptions options;
+  std::string name = spec.name;
+  bool print_config = false;
+  AddBusOptions(app, options);
+  app.add_option("--name", name, "name in heartbeats and messages")
+      ->check([](const std::string& text) {
+        return text.empty() || text.size() > kMaxNameBytes
+                   ? "a name has 1 to 63 bytes"
+                   : "";
+      });
+  app.set_config("--config", "", "TOML file with any of these options");
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.add_flag("--print-config", print_config,
+               "prints the effective options as TOML and exits")
+      ->configurable(false);
+  app.set_version_flag("--version", spec.program + " " + BuildId());
+  if (spec.add_options) spec.add_options(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
+  }
+  const Status completed = options.Complete();
+  if (!completed) {
+    LogError(completed.error().message);
+    return kWrongUsage;
+  }
+  const std::string config = app.config_to_str(true, false);
+  if (print_config) {
+    std::cout << config;
+    return 0;
+  }
+  SetLogName(name);
+  try {
+    return Serve(spec, name, options, config);
+  } catch (const std::exception& error) {
+    return Fail(error.what());
+  }
+}
+
+}  // namespace terra::bus

@@ -1,0 +1,133 @@
+#include "bus/wire.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace terra::bus {
+namespace {
+
+Error Malformed(const std::string& what) {
+  return Error{ErrorCode::kInvalid, "malformed message: " + what};
+}
+
+// Walks over big-endian bytes without ever leaving them.
+class Walker {
+ public:
+  explicit Walker(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  std::size_t left() const { return bytes_.size() - at_; }
+
+  bool Skip(std::size_t count, std::size_t size) {
+    if (count > left() / size) return false;
+    at_ += count * size;
+    return true;
+  }
+
+  // Pre: size bytes are left.
+  std::uint64_t Unsigned(std::size_t size) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | bytes_[at_++];
+    return value;
+  }
+
+  bool SkipString() {
+    if (left() < 4) return false;
+    const auto length =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(Unsigned(4)));
+    if (length < 1 || static_cast<std::size_t>(length) > left()) return false;
+    const auto text = bytes_.subspan(at_, static_cast<std::size_t>(length));
+    at_ += text.size();
+    // The length counts the zero at the end, which must be the only one.
+    return std::find(text.begin(), text.end(), 0) == text.end() - 1;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+};
+
+std::size_t FieldSize(char kind) {
+  switch (kind) {
+    case 'l':
+    case 'd':
+      return 8;
+    case 'i':
+      return 4;
+    case 'h':
+      return 2;
+    case 'b':
+      return 1;
+    default:
+      FailRequirement("known field kind", __FILE__, __LINE__);
+  }
+}
+
+bool SkipField(Walker& walker, char kind, std::size_t count) {
+  if (kind != 's') return walker.Skip(count, FieldSize(kind));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!walker.SkipString()) return false;
+  }
+  return true;
+}
+
+// Reads the digits after an N of the layout and moves past them.
+std::int32_t LimitAt(std::string_view layout, std::size_t& at) {
+  std::int32_t limit = 0;
+  while (at < layout.size() && std::isdigit(layout[at]) != 0) {
+    limit = limit * 10 + (layout[at++] - '0');
+  }
+  return limit;
+}
+
+}  // namespace
+
+Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
+                   std::span<const std::uint8_t> bytes) {
+  Walker walker(bytes);
+  if (bytes.size() < 8) return Malformed("shorter than its fingerprint");
+  if (static_cast<std::int64_t>(walker.Unsigned(8)) != fingerprint) {
+    return Malformed("another type or version (fingerprint)");
+  }
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < layout.size();) {
+    const char kind = layout[at++];
+    if (kind == ' ') continue;
+    if (kind == 'N') {
+      const std::int32_t limit = LimitAt(layout, at);
+      if (walker.left() < 4) return Malformed("truncated");
+      const auto value = static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(walker.Unsigned(4)));
+      if (value < 0 || value > limit) {
+        return Malformed("count " + std::to_string(value) + ", at most " +
+                         std::to_string(limit));
+      }
+      count = static_cast<std::size_t>(value);
+      continue;
+    }
+    const bool repeated = at < layout.size() && layout[at] == '*';
+    if (repeated) ++at;
+    if (!SkipField(walker, kind, repeated ? count : 1)) {
+      return Malformed("truncated, or a bad string");
+    }
+  }
+  if (walker.left() != 0) {
+    return Malformed(std::to_string(walker.left()) + " bytes too many");
+  }
+  return Done{};
+}
+
+std::string CleanText(std::string_view text, std::size_t max_bytes) {
+  std::string clean(text);
+  std::erase(clean, '\0');
+  if (clean.size() > max_bytes) {
+    std::size_t end = max_bytes;
+    // Bytes 10xxxxxx continue a character.
+    while (end > 0 && (static_cast<unsigned char>(clean[end]) & 0xC0) == 0x80) {
+      --end;
+    }
+    clean.resize(end);
+  }
+  return clean;
+}
+
+}  // namespace terra::bus

@@ -1,0 +1,49 @@
+// terra: the tool for people. Exit codes: 0 done, 1 could not, 2 wrong usage.
+#include <exception>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+
+namespace {
+
+constexpr int kCouldNot = 1;
+constexpr int kWrongUsage = 2;
+
+void AddCommands(CLI::App& app, int& exit_code) {
+  using namespace terra::cli;  // NOLINT(google-build-using-namespace)
+  AddPlanCommand(app, exit_code);
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{
+      "Cheaper routes on fine terrain maps beside a planner that searches a "
+      "fixed graph.",
+      "terra"};
+  int exit_code = 0;
+  app.set_version_flag("--version", "terra " TERRA_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Maps: 8-bit PNG of terrain ids, 24-bit PNG in legend colours, MovingAI "
+      ".map,\nROS map_server .yaml. Cells are X,Y from the top left corner.\n"
+      "'terra COMMAND --help' shows the options of a command and an example.");
+  AddCommands(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "terra: " << error.what() << "\n";
+    return kCouldNot;
+  }
+}

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "terrain/cell.h"
+#include "terrain/files/map_file.h"
+#include "terrain/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace terra::cli {
+
+/// The cost model as options: --corner-cutting, --clearance.
+void AddCostModelOptions(CLI::App& command, CostModel& model);
+
+/// What every command that reads a map takes.
+struct MapArguments {
+  std::string path;
+  MapFileOptions options;
+};
+
+/// Adds --map, --legend and the cost model.
+void AddMapOptions(CLI::App& command, MapArguments& arguments);
+
+/// Adds a required option of the form X,Y.
+void AddCellOption(CLI::App& command, const std::string& name, Cell& cell,
+                   const std::string& description);
+
+/// Start and goal, and the map they lie on.
+struct ProblemArguments {
+  MapArguments map;
+  Cell start;
+  Cell goal;
+};
+
+/// Adds the map's options, --start and --goal.
+void AddProblemOptions(CLI::App& command, ProblemArguments& arguments);
+
+/// Reads the map and checks that start and goal are passable cells of it.
+Result<TerrainMap> LoadProblem(const ProblemArguments& arguments);
+
+}  // namespace terra::cli

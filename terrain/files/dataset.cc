@@ -1,0 +1,174 @@
+#include "terrain/files/dataset.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "terrain/builtin_legends.h"
+#include "terrain/files/legend_file.h"
+#include "terrain/files/map_file.h"
+#include "terrain/files/whole_file.h"
+
+namespace terra {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 7> kCaseColumns = {
+    "case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"};
+constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 20;
+
+bool IsExtraColumn(const std::string& column) {
+  return std::find(kCaseColumns.begin(), kCaseColumns.end(), column) ==
+         kCaseColumns.end();
+}
+
+// A dataset may come from elsewhere: its maps must lie in its own folder.
+bool StaysInside(const std::string& relative) {
+  const fs::path path(relative);
+  return !relative.empty() && path.is_relative() &&
+         std::find(path.begin(), path.end(), "..") == path.end();
+}
+
+Result<DatasetCase> ParseCase(const CsvTable& table, const CsvRow& row,
+                              const std::string& path) {
+  const auto fail = [&](const std::string& what) {
+    return Error{ErrorCode::kInvalid,
+                 path + ":" + std::to_string(row.line) + ": " + what};
+  };
+  DatasetCase result;
+  std::array<int*, 4> numbers = {&result.start.x, &result.start.y,
+                                 &result.goal.x, &result.goal.y};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::string_view column = kCaseColumns[i + 2];
+    const Result<int> value = ParseInteger(
+        row.fields[static_cast<std::size_t>(table.Column(column))]);
+    if (!value.ok()) {
+      return fail(std::string(column) + ": " + value.error().message);
+    }
+    *numbers[i] = *value;
+  }
+  for (std::size_t i = 0; i < row.fields.size(); ++i) {
+    const std::string& column = table.header[i];
+    if (column == "case_id") result.case_id = row.fields[i];
+    if (column == "map") result.map = row.fields[i];
+    if (column == "group") result.group = row.fields[i];
+    if (IsExtraColumn(column)) result.extra[column] = row.fields[i];
+  }
+  if (result.case_id.empty()) return fail("empty case_id");
+  if (!StaysInside(result.map)) {
+    return fail("map '" + result.map +
+                "' must be a path inside the dataset's folder");
+  }
+  return result;
+}
+
+Result<std::vector<DatasetCase>> ReadCases(const std::string& path) {
+  const Result<CsvTable> table = ReadCsv(
+      path, {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y"});
+  if (!table.ok()) return table.error();
+  std::vector<DatasetCase> cases;
+  std::set<std::string> ids;
+  for (const CsvRow& row : table->rows) {
+    Result<DatasetCase> one = ParseCase(*table, row, path);
+    if (!one.ok()) return one.error();
+    if (!ids.insert(one->case_id).second) {
+      return Error{ErrorCode::kInvalid,
+                   path + ":" + std::to_string(row.line) + ": case_id '" +
+                       one->case_id + "' comes twice"};
+    }
+    cases.push_back(std::move(*one));
+  }
+  return cases;
+}
+
+// Fills name, version, digest and json from dataset.json, where there is one.
+Status ReadJson(const std::string& path, Dataset& dataset) {
+  Result<std::string> text = ReadWholeFile(path, kMaxJsonBytes);
+  if (!text.ok()) {
+    if (text.error().code == ErrorCode::kNotFound) return Done{};
+    return text.error();
+  }
+  dataset.json = std::move(*text);
+  try {
+    const auto json = nlohmann::json::parse(dataset.json);
+    dataset.name = json.value("name", "");
+    dataset.version = json.value("version", "");
+    dataset.digest = json.value("digest", "");
+  } catch (const nlohmann::json::exception& error) {
+    return Error{ErrorCode::kInvalid, path + ": " + error.what()};
+  }
+  return Done{};
+}
+
+}  // namespace
+
+const DatasetCase* Dataset::Find(const std::string& case_id) const {
+  const auto found =
+      std::find_if(cases.begin(), cases.end(),
+                   [&](const DatasetCase& c) { return c.case_id == case_id; });
+  return found == cases.end() ? nullptr : &*found;
+}
+
+Result<Dataset> ReadDataset(const std::string& folder) {
+  const fs::path root(folder);
+  const std::string legend_path = (root / "legend.csv").string();
+  Result<Legend> legend = fs::exists(legend_path)
+                              ? ReadLegend(legend_path)
+                              : Result<Legend>(MultiTerraPathLegend());
+  if (!legend.ok()) return legend.error();
+  Result<std::vector<DatasetCase>> cases =
+      ReadCases((root / "cases.csv").string());
+  if (!cases.ok()) return cases.error();
+  Dataset dataset{folder, "", "", "", "", std::move(*legend),
+                  std::move(*cases)};
+  const Status json = ReadJson((root / "dataset.json").string(), dataset);
+  if (!json.ok()) return json.error();
+  return dataset;
+}
+
+Result<TerrainMap> ReadCaseMap(const Dataset& dataset,
+                               const DatasetCase& dataset_case,
+                               const CostModel& model) {
+  const fs::path root(dataset.folder);
+  const std::string legend_path = (root / "legend.csv").string();
+  MapFileOptions options;
+  options.legend = fs::exists(legend_path) ? legend_path : "multiterrapath";
+  options.cost_model = model;
+  Result<MapFile> file = ReadMap((root / dataset_case.map).string(), options);
+  if (!file.ok()) return file.error();
+  return std::move(file->map);
+}
+
+Status WriteCases(const std::vector<DatasetCase>& cases,
+                  const std::string& path) {
+  std::vector<std::string> header(kCaseColumns.begin(), kCaseColumns.end());
+  if (!cases.empty()) {
+    for (const auto& [column, value] : cases.front().extra) {
+      header.push_back(column);
+    }
+  }
+  std::string text = CsvLine(header);
+  for (const DatasetCase& one : cases) {
+    std::vector<std::string> fields = {
+        one.case_id,
+        one.map,
+        std::to_string(one.start.x),
+        std::to_string(one.start.y),
+        std::to_string(one.goal.x),
+        std::to_string(one.goal.y),
+        one.group};
+    for (std::size_t i = kCaseColumns.size(); i < header.size(); ++i) {
+      const auto found = one.extra.find(header[i]);
+      fields.push_back(found == one.extra.end() ? "" : found->second);
+    }
+    text += CsvLine(fields);
+  }
+  return WriteWholeFile(path, text);
+}
+
+}  // namespace terra

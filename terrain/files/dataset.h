@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "terrain/cell.h"
+#include "terrain/files/csv.h"
+#include "terrain/legend.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra {
+
+/// One start and goal on one map of a dataset.
+struct DatasetCase {
+  std::string case_id;
+  std::string map;  ///< Path relative to the dataset's folder.
+  Cell start;
+  Cell goal;
+  std::string group;  ///< Empty where cases.csv has no such column.
+  /// The other columns of cases.csv (RUGD: sequence), by name.
+  std::map<std::string, std::string> extra;
+};
+
+/// A folder with cases.csv, dataset.json, maps and, unless the maps are of the
+/// multiterrapath legend, legend.csv.
+struct Dataset {
+  std::string folder;
+  std::string name;     ///< dataset.json "name".
+  std::string version;  ///< dataset.json "version"; empty where it has none.
+  std::string digest;   ///< dataset.json "digest"; empty where it has none.
+  std::string json;     ///< dataset.json as it stands.
+  Legend legend;
+  std::vector<DatasetCase> cases;  ///< In order of cases.csv.
+
+  /// Returns the case of an id, or nullptr.
+  const DatasetCase* Find(const std::string& case_id) const;
+};
+
+/// Reads the folder's tables, no maps. A missing dataset.json leaves name,
+/// version, digest and json empty.
+/// Errors: name the file and line; case ids must be unique and map paths stay
+/// inside the folder.
+Result<Dataset> ReadDataset(const std::string& folder);
+
+/// Reads the map of a case.
+Result<TerrainMap> ReadCaseMap(const Dataset& dataset,
+                               const DatasetCase& dataset_case,
+                               const CostModel& model = {});
+
+/// Writes cases.csv (columns case_id, map, start_x, start_y, goal_x, goal_y,
+/// group, then the extra ones of the first case).
+Status WriteCases(const std::vector<DatasetCase>& cases,
+                  const std::string& path);
+
+}  // namespace terra

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "terrain/files/map_file.h"
+#include "terrain/legend.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra {
+
+/// The readers behind ReadMap, one per format: content in, ids out. `name` is
+/// the file's, for errors.
+
+/// 8-bit grey: the values. 24-bit colour: the ids of exactly these colours.
+Result<ByteRaster> ParsePngMap(std::string_view bytes, const Legend& legend,
+                               const std::string& name);
+
+Result<ByteRaster> ParseMovingAiMap(std::string_view text,
+                                    const std::string& name);
+
+/// What a map_server yaml and its picture hold.
+struct RosMap {
+  ByteRaster ids;
+  MapPlacement placement;
+};
+
+/// Reads the yaml's text and the picture it names, relative to the yaml.
+/// `own_legend` = the user gave one, so `mode: scale` and `raw` may be read.
+Result<RosMap> ParseRosMap(std::string_view text, const std::string& name,
+                           bool own_legend);
+
+}  // namespace terra

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "terrain/cell.h"
+#include "terrain/legend.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra {
+
+/// Route colours, the same in every picture.
+inline constexpr Color kBaselineColor = FromRgb(0x1F4FE0);
+inline constexpr Color kCandidateColor = FromRgb(0x0A8F2E);
+
+/// A route to draw.
+struct PictureRoute {
+  Route route;
+  Color color = kBaselineColor;
+  std::string label;  ///< In the legend box; empty = not listed.
+};
+
+/// What a picture shows besides the terrain.
+struct PictureOptions {
+  std::vector<PictureRoute> routes;  ///< Drawn in this order.
+  std::vector<Cell> starts;          ///< A ring with an S.
+  std::vector<Cell> goals;           ///< A ring with a G.
+  bool legend = true;                ///< A box right of the map.
+  /// Pixels per cell; 0 = small maps are enlarged to about 700 pixels, larger
+  /// ones keep one pixel per cell.
+  int scale = 0;
+};
+
+/// Draws the map in its legend's colours, routes over it with a light edge, and
+/// writes a PNG. A route is drawn through its dense cells, so what is seen is
+/// what is checked; parts outside the map are left out.
+/// Errors: the file cannot be written; the picture would be larger than
+/// TerrainMap::kMaxSide x 2 a side.
+Status WritePicture(const TerrainMap& map, const PictureOptions& options,
+                    const std::string& path);
+
+}  // namespace terra

@@ -1,0 +1,79 @@
+#include "terrain/files/whole_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <unistd.h>
+
+namespace terra {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error CannotWrite(const std::string& path, const std::string& reason) {
+  return Error{ErrorCode::kUnavailable,
+               path + ": cannot be written: " + reason};
+}
+
+}  // namespace
+
+Result<std::string> ReadWholeFile(const std::string& path,
+                                  std::size_t max_bytes) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (!fs::exists(status)) {
+    return Error{ErrorCode::kNotFound, path + ": there is no such file"};
+  }
+  if (!fs::is_regular_file(status)) {
+    return Error{ErrorCode::kInvalid, path + ": is not a regular file"};
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    return Error{ErrorCode::kUnavailable,
+                 path + ": cannot be opened: " + std::strerror(errno)};
+  }
+  const std::uintmax_t size = fs::file_size(path, failure);
+  if (failure || size > max_bytes) {
+    return Error{ErrorCode::kUnsupported,
+                 path + ": larger than " + std::to_string(max_bytes) +
+                     " bytes, the limit for this kind of file"};
+  }
+  std::string content(static_cast<std::size_t>(size), '\0');
+  file.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) {
+    return Error{ErrorCode::kUnavailable, path + ": cannot be read"};
+  }
+  return content;
+}
+
+Status WriteWholeFile(const std::string& path, std::string_view content) {
+  const std::string temporary = path + ".part" + std::to_string(::getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    if (!file) {
+      return CannotWrite(path, std::strerror(errno));
+    }
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.close();
+    if (!file) {
+      const std::string reason = std::strerror(errno);
+      std::error_code ignored;
+      fs::remove(temporary, ignored);
+      return CannotWrite(path, reason);
+    }
+  }
+  std::error_code failure;
+  fs::rename(temporary, path, failure);
+  if (failure) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    return CannotWrite(path, failure.message());
+  }
+  return Done{};
+}
+
+}  // namespace terra

@@ -1,0 +1,211 @@
+#include "bus/bus.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "bus/envelope.h"
+#include "bus/event_loop.h"
+#include "tests/bus/sample_messages.h"
+
+namespace terra::bus {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Returns the next message, waiting for its event at most 5 s.
+std::optional<RawMessage> Next(Inbox& inbox) {
+  for (int i = 0; i < 50; ++i) {
+    if (std::optional<RawMessage> message = inbox.Pop()) return message;
+    pollfd fd{inbox.fd(), POLLIN, 0};
+    poll(&fd, 1, 100);
+    inbox.Clear();
+  }
+  return std::nullopt;
+}
+
+std::unique_ptr<Bus> OpenBus(const std::string& url) {
+  Result<std::unique_ptr<Bus>> bus = Bus::Open(url, ChannelNames());
+  if (!bus) ADD_FAILURE() << bus.error().message;
+  return *std::move(bus);
+}
+
+class BusTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BusTest, CarriesAMessageUnchanged) {
+  const std::vector<Channel> channels = {Channel::kPose, Channel::kBaseline};
+  Inbox inbox;
+  const auto bus = OpenBus(GetParam());
+  ASSERT_TRUE(bus->Listen(channels, inbox).ok());
+  Outbox out(*bus, 7);
+  auto sent = testing::Sample<terra_msg::baseline_t>();
+  ASSERT_TRUE(out.Send(sent));
+  const std::optional<RawMessage> got = Next(inbox);
+  ASSERT_TRUE(got.has_value());
+  EXPECT_EQ(got->channel, Channel::kBaseline);
+  EXPECT_EQ(got->bytes, Encode(sent));
+}
+
+TEST_P(BusTest, RefusesMessagesAboveTheLimit) {
+  const auto bus = OpenBus(GetParam());
+  EXPECT_TRUE(
+      bus->Publish(Channel::kLog, std::vector<std::uint8_t>(kMaxMessageBytes)));
+  EXPECT_FALSE(bus->Publish(Channel::kLog,
+                            std::vector<std::uint8_t>(kMaxMessageBytes + 1)));
+  EXPECT_EQ(bus->counters().send_failed, 1);
+}
+
+TEST_P(BusTest, KeepsTheOrderOfABurst) {
+  const std::vector<Channel> channels = {Channel::kPose};
+  Inbox inbox;
+  const auto bus = OpenBus(GetParam());
+  ASSERT_TRUE(bus->Listen(channels, inbox).ok());
+  Outbox out(*bus, 7);
+  for (int i = 0; i < 100; ++i) {
+    auto pose = testing::Sample<terra_msg::pose_t>();
+    out.Send(pose);
+  }
+  for (std::int64_t seq = 1; seq <= 100; ++seq) {
+    const std::optional<RawMessage> got = Next(inbox);
+    ASSERT_TRUE(got.has_value()) << seq;
+    EXPECT_EQ(Decode<terra_msg::pose_t>(got->bytes)->seq, seq);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Providers, BusTest,
+                         ::testing::Values("memq://",
+                                           "udpm://239.255.76.67:17600?ttl=0"),
+                         [](const auto& tested) {
+                           return tested.param.substr(0, 4);
+                         });
+
+TEST(BusErrorTest, ABusyPortIsNamed) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(17602);
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const auto bus = OpenBus("udpm://239.255.76.67:17602?ttl=0");
+  Inbox inbox;
+  const std::vector<Channel> channels = {Channel::kPose};
+  const Status listening = bus->Listen(channels, inbox);
+  close(fd);
+  ASSERT_FALSE(listening.ok());
+  EXPECT_NE(listening.error().message.find("17602"), std::string::npos);
+  EXPECT_NE(listening.error().message.find("taken"), std::string::npos);
+}
+
+TEST(BusErrorTest, AUrlOfNoProviderIsRefused) {
+  EXPECT_FALSE(Bus::Open("nonsense", ChannelNames()).ok());
+  EXPECT_FALSE(Bus::Open("udpm://1.2.3.4:17600", ChannelNames()).ok());
+}
+
+TEST(InboxTest, AFullChannelLosesItsOldestAndLeavesTheOthersAlone) {
+  Inbox inbox;
+  inbox.Push(Channel::kPose, std::vector<std::uint8_t>{42});
+  for (int i = 0; i < 200; ++i) {
+    inbox.Push(Channel::kStatus,
+               std::vector<std::uint8_t>{static_cast<std::uint8_t>(i)});
+  }
+  EXPECT_EQ(inbox.dropped(), 200 - 128);
+  EXPECT_EQ(inbox.Pop()->channel, Channel::kPose);
+  EXPECT_EQ(inbox.Pop()->bytes[0], 200 - 128);
+}
+
+TEST(InboxTest, ThreadsMayPushWhileOneTakes) {
+  Inbox inbox;
+  constexpr int kEach = 2000;
+  const auto push = [&](Channel channel) {
+    for (int i = 0; i < kEach; ++i) {
+      inbox.Push(channel, std::vector<std::uint8_t>(16, 1));
+    }
+  };
+  std::thread a(push, Channel::kPose);
+  std::thread b(push, Channel::kStatus);
+  std::int64_t taken = 0;
+  while (taken + inbox.dropped() < 2 * kEach) {
+    if (inbox.Pop()) ++taken;
+  }
+  a.join();
+  b.join();
+  EXPECT_FALSE(inbox.Pop().has_value());
+}
+
+// Ends when it has seen what it waits for.
+class EchoNode : public Node {
+ public:
+  EchoNode() {
+    Listen<terra_msg::pose_t>([this](const auto&, Time) {
+      got_pose = true;
+    });
+  }
+  Time Advance(Time now) override {
+    ++turns;
+    return until_end == kNever ? kNever : std::max(now, until_end);
+  }
+  std::string state() const override { return "ready"; }
+  bool done() const override {
+    return got_pose || (until_end != kNever && Clock::now() >= until_end);
+  }
+  bool got_pose = false;
+  Time until_end = kNever;
+  int turns = 0;
+};
+
+TEST(EventLoopTest, HandsMessagesFromAnotherThreadToTheNode) {
+  const StopSignal stop;
+  Inbox inbox;
+  const auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  EchoNode node;
+  ASSERT_TRUE(bus->Listen(node.channels(), inbox).ok());
+  EventLoop loop(inbox, stop);
+  std::thread sender([&] {
+    Outbox out(*bus, 7);
+    auto pose = testing::Sample<terra_msg::pose_t>();
+    out.Send(pose);
+  });
+  loop.Run(node);
+  sender.join();
+  EXPECT_TRUE(node.got_pose);
+}
+
+TEST(EventLoopTest, EndsOnSigterm) {
+  const StopSignal stop;
+  Inbox inbox;
+  EventLoop loop(inbox, stop);
+  EchoNode node;
+  std::raise(SIGTERM);
+  loop.Run(node);
+  EXPECT_FALSE(node.got_pose);
+}
+
+TEST(EventLoopTest, RestsWhileNothingHappens) {
+  const StopSignal stop;
+  Inbox inbox;
+  EventLoop loop(inbox, stop);
+  EchoNode node;
+  node.until_end = Clock::now() + milliseconds(100);
+  loop.Run(node);
+  EXPECT_LE(node.turns, 5);
+}
+
+TEST(NodeTest, CountsWhatDoesNotDecode) {
+  EchoNode node;
+  node.Receive(RawMessage{Channel::kPose, {1, 2, 3}}, Clock::now());
+  node.Receive(
+      RawMessage{Channel::kPose, Encode(testing::Sample<terra_msg::pose_t>())},
+      Clock::now());
+  Counters counters;
+  node.AddCounters(counters);
+  EXPECT_EQ(counters, (Counters{{"received", 2}, {"malformed", 1}}));
+  EXPECT_TRUE(node.got_pose);
+}
+
+}  // namespace
+}  // namespace terra::bus

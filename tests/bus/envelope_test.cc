@@ -1,0 +1,80 @@
+#include "bus/envelope.h"
+
+#include <gtest/gtest.h>
+
+namespace terra::bus {
+namespace {
+
+using Sender = SenderTracker::Sender;
+
+TEST(SenderTrackerTest, TheFirstSessionIsTaken) {
+  SenderTracker tracker;
+  EXPECT_EQ(tracker.Look(7, 1), Sender::kTookOver);
+  EXPECT_EQ(tracker.Look(7, 2), Sender::kCurrent);
+}
+
+TEST(SenderTrackerTest, ANewSessionTakesOverAtOnceAndTheOldOneIsReported) {
+  SenderTracker tracker;
+  tracker.Look(7, 1);
+  EXPECT_EQ(tracker.Look(8, 1), Sender::kTookOver);
+  EXPECT_EQ(tracker.Look(7, 2), Sender::kReplaced);
+  EXPECT_EQ(tracker.Look(8, 2), Sender::kCurrent);
+  EXPECT_EQ(tracker.from_replaced(), 1);
+}
+
+TEST(SenderTrackerTest, AnOldOrRepeatedSeqIsIgnored) {
+  SenderTracker tracker;
+  tracker.Look(7, 5);
+  EXPECT_EQ(tracker.Look(7, 5), Sender::kRepeated);
+  EXPECT_EQ(tracker.Look(7, 4), Sender::kRepeated);
+  EXPECT_FALSE(tracker.Accept(7, 3));
+}
+
+TEST(SenderTrackerTest, GapsInSeqAreCounted) {
+  SenderTracker tracker;
+  tracker.Look(7, 1);
+  tracker.Look(7, 2);
+  tracker.Look(7, 6);
+  EXPECT_EQ(tracker.lost(), 3);
+}
+
+TEST(SenderTrackerTest, JoiningLateIsNoLoss) {
+  SenderTracker tracker;
+  tracker.Look(7, 1000);
+  EXPECT_EQ(tracker.lost(), 0);
+}
+
+TEST(RandomIdTest, IsNeverZeroAndDiffers) {
+  EXPECT_NE(RandomId(), 0);
+  EXPECT_NE(RandomId(), RandomId());
+}
+
+// Keeps what is sent.
+class Recorder : public Transport {
+ public:
+  bool Publish(Channel channel, std::span<const std::uint8_t> bytes) override {
+    channels.push_back(channel);
+    last.assign(bytes.begin(), bytes.end());
+    return true;
+  }
+  std::vector<Channel> channels;
+  std::vector<std::uint8_t> last;
+};
+
+TEST(OutboxTest, StampsSessionAndCountsPerChannel) {
+  Recorder recorder;
+  Outbox out(recorder, 99);
+  terra_msg::pose_t pose{};
+  terra_msg::map_request_t request{};
+  out.Send(pose);
+  out.Send(request);
+  out.Send(pose);
+  const auto sent = Decode<terra_msg::pose_t>(recorder.last);
+  ASSERT_TRUE(sent.ok());
+  EXPECT_EQ(sent->session, 99);
+  EXPECT_EQ(sent->seq, 2);
+  EXPECT_GT(sent->utime, 0);
+}
+
+}  // namespace
+}  // namespace terra::bus

@@ -9,8 +9,6 @@
 #include <cstring>
 #include <utility>
 
-#include "bus/lcm_url.h"
-
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -21,8 +19,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 8;
 constexpr std::int64_t kSecondUs = 1'000'000;
 constexpr int kDefaultRecvBuffer = 2 << 20;
-// The largest message there can be; the kernel says so when it cuts a longer
-// one.
+// One byte more than the largest message, so that a longer one is seen as cut.
 constexpr std::size_t kSlotBytes =
     kHeaderBytes + kMaxChannelName + 1 + kMaxDatagramPayload;
 
@@ -31,16 +28,15 @@ std::uint32_t BigEndian32(const std::uint8_t* at) {
          (std::uint32_t{at[2]} << 8) | at[3];
 }
 
-// Returns the URL's recv_buf_size, or ours where it has none that counts.
-int RecvBufferOf(const LcmUrl& url) {
-  constexpr std::string_view kOption = "recv_buf_size=";
-  const std::size_t at = url.options.find(kOption);
-  int size = 0;
-  if (at != std::string::npos) {
-    const char* const first = url.options.data() + at + kOption.size();
-    std::from_chars(first, url.options.data() + url.options.size(), size);
+std::optional<int> ParseNumber(std::string_view text, int low, int high) {
+  int value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < low ||
+      value > high) {
+    return std::nullopt;
   }
-  return size > 0 ? size : kDefaultRecvBuffer;
+  return value;
 }
 
 Error SystemError(const std::string& what, const std::string& url) {
@@ -50,12 +46,12 @@ Error SystemError(const std::string& what, const std::string& url) {
 
 // Binds and joins as LCM does (SO_REUSEADDR, any interface), but to the group's
 // address: LCM 1.3.1 binds to all addresses and hears other groups too.
-Status Listen(int fd, const LcmUrl& to, const std::string& url) {
+Status Listen(int fd, const UdpmUrl& to, const std::string& url) {
   const int yes = 1;
   if (setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) != 0) {
     return SystemError("cannot share the port", url);
   }
-  const int size = RecvBufferOf(to);
+  const int size = to.recv_buf_size > 0 ? to.recv_buf_size : kDefaultRecvBuffer;
   // The kernel may give less, and not every kernel counts its drops; both only
   // change how much of a burst is seen.
   setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &size, sizeof(size));
@@ -63,14 +59,14 @@ Status Listen(int fd, const LcmUrl& to, const std::string& url) {
 
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(to.port));
-  inet_pton(AF_INET, to.group.c_str(), &address.sin_addr);
+  address.sin_addr.s_addr = htonl(to.group);
+  address.sin_port = htons(to.port);
   if (bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) !=
       0) {
     return SystemError("cannot listen", url);
   }
   ip_mreq membership{};
-  membership.imr_multiaddr = address.sin_addr;
+  membership.imr_multiaddr.s_addr = htonl(to.group);
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   if (setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership,
                  sizeof(membership)) != 0) {
@@ -130,18 +126,54 @@ bool AdviceRateLimiter::Admit(SenderAddress sender, std::int64_t now_us) {
   return true;
 }
 
+Result<UdpmUrl> ParseUdpmUrl(std::string_view url) {
+  const Error error{ErrorCode::kInvalid,
+                    "not a URL of the form udpm://GROUP:PORT?options with a "
+                    "multicast group: " +
+                        std::string(url)};
+  constexpr std::string_view kScheme = "udpm://";
+  if (!url.starts_with(kScheme)) {
+    return error;
+  }
+  const std::string_view rest = url.substr(kScheme.size());
+  const std::string_view network = rest.substr(0, rest.find('?'));
+  const std::size_t colon = network.find(':');
+  in_addr group{};
+  if (colon == std::string_view::npos ||
+      inet_pton(AF_INET, std::string(network.substr(0, colon)).c_str(),
+                &group) != 1) {
+    return error;
+  }
+  UdpmUrl result;
+  result.group = ntohl(group.s_addr);
+  const auto port = ParseNumber(network.substr(colon + 1), 1, 65535);
+  if (!port || (result.group >> 28) != 0xe) {
+    return error;
+  }
+  result.port = static_cast<std::uint16_t>(*port);
+  constexpr std::string_view kBuffer = "recv_buf_size=";
+  std::string_view options =
+      network.size() == rest.size() ? "" : rest.substr(network.size() + 1);
+  while (!options.empty()) {
+    const std::string_view option = options.substr(0, options.find('&'));
+    options.remove_prefix(std::min(options.size(), option.size() + 1));
+    if (option.starts_with(kBuffer)) {
+      const auto size = ParseNumber(option.substr(kBuffer.size()), 1, 1 << 30);
+      if (!size) {
+        return error;
+      }
+      result.recv_buf_size = *size;
+    }
+  }
+  return result;
+}
+
 Result<AdviceReceiver> AdviceReceiver::Open(const std::string& url,
                                             std::string channel,
                                             AdviceRateLimiter::Limits limits) {
-  const Result<LcmUrl> to = ParseLcmUrl(url);
+  const Result<UdpmUrl> to = ParseUdpmUrl(url);
   if (!to) {
     return to.error();
-  }
-  if (!to->is_udpm()) {
-    return Error{ErrorCode::kInvalid,
-                 "the advice receiver needs a udpm:// "
-                 "URL, not " +
-                     url};
   }
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) {

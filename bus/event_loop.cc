@@ -28,7 +28,9 @@ timespec ToTimespec(Duration wait) {
 void Wait(std::vector<pollfd>& fds, Time until) {
   timespec wait{};
   if (until != kNever) {
-    wait = ToTimespec(std::max(Duration::zero(), until - Clock::now()));
+    // Compared first: a time of "at once" may be too long ago to subtract from.
+    const Time now = Clock::now();
+    wait = ToTimespec(until > now ? until - now : Duration::zero());
   }
   const int ready =
       ppoll(fds.data(), fds.size(), until == kNever ? nullptr : &wait, nullptr);

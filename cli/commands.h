@@ -13,5 +13,11 @@ namespace terra::cli {
 ///
 /// Pre: exit_code outlives the app.
 void AddPlanCommand(CLI::App& app, int& exit_code);
+void AddOracleCommand(CLI::App& app, int& exit_code);
+void AddVerifyCommand(CLI::App& app, int& exit_code);
+void AddAdviseCommand(CLI::App& app, int& exit_code);
+void AddRenderCommand(CLI::App& app, int& exit_code);
+void AddRequestCommand(CLI::App& app, int& exit_code);
+void AddBenchCommand(CLI::App& app, int& exit_code);
 
 }  // namespace terra::cli

@@ -14,6 +14,12 @@ constexpr int kWrongUsage = 2;
 void AddCommands(CLI::App& app, int& exit_code) {
   using namespace terra::cli;  // NOLINT(google-build-using-namespace)
   AddPlanCommand(app, exit_code);
+  AddOracleCommand(app, exit_code);
+  AddVerifyCommand(app, exit_code);
+  AddAdviseCommand(app, exit_code);
+  AddRenderCommand(app, exit_code);
+  AddRequestCommand(app, exit_code);
+  AddBenchCommand(app, exit_code);
 }
 
 int Run(int argc, char** argv) {

@@ -9,12 +9,20 @@
 namespace terra::cli {
 namespace {
 
+// What cannot be read on the command line is wrong usage.
+template <typename T>
+T ValueOrThrow(Result<T> parsed, const std::string& option) {
+  if (!parsed.ok()) throw CLI::ValidationError(option, parsed.error().message);
+  return std::move(*parsed);
+}
+
 Status CheckEnd(const TerrainMap& map, const std::string& name, Cell cell) {
   if (!map.Contains(cell)) {
-    return Error{ErrorCode::kInvalid,
-                 name + " " + ToString(cell) + " is outside the map; x is 0 to " +
-                     std::to_string(map.width() - 1) + ", y is 0 to " +
-                     std::to_string(map.height() - 1)};
+    return Error{ErrorCode::kInvalid, name + " " + ToString(cell) +
+                                          " is outside the map; x is 0 to " +
+                                          std::to_string(map.width() - 1) +
+                                          ", y is 0 to " +
+                                          std::to_string(map.height() - 1)};
   }
   if (map.Passable(cell)) return Done{};
   const Terrain* terrain = map.legend().Find(map.ids()(cell.y, cell.x));
@@ -33,8 +41,7 @@ void AddCostModelOptions(CLI::App& command, CostModel& model) {
       .add_option("--corner-cutting", model.corner_cutting,
                   "May a diagonal step pass between two blocked cells: on "
                   "(default) or off")
-      ->transform(CLI::Transformer(on_off))
-      ->check(CLI::IsMember(std::vector<std::string>{"0", "1"}))
+      ->transform(CLI::CheckedTransformer(on_off).description(""))
       ->type_name("on|off");
   command
       .add_option("--clearance", model.clearance_cells,
@@ -57,19 +64,31 @@ void AddMapOptions(CLI::App& command, MapArguments& arguments) {
 
 void AddCellOption(CLI::App& command, const std::string& name, Cell& cell,
                    const std::string& description) {
-  command
-      .add_option_function<std::string>(
-          name,
-          [&cell, name](const std::string& text) {
-            const Result<Cell> parsed = ParsePoint(text);
-            if (!parsed.ok()) {
-              throw CLI::ValidationError(name, parsed.error().message);
-            }
-            cell = *parsed;
-          },
-          description)
+  const auto read = [&cell, name](const std::string& text) {
+    cell = ValueOrThrow(ParsePoint(text), name);
+  };
+  command.add_option_function<std::string>(name, read, description)
       ->required()
       ->type_name("X,Y");
+}
+
+CLI::Option* AddRouteOption(CLI::App& command, const std::string& name,
+                            std::optional<Route>& route,
+                            const std::string& description) {
+  const auto read = [&route, name](const std::string& text) {
+    route = ValueOrThrow(ParseRoute(text), name);
+  };
+  return command.add_option_function<std::string>(name, read, description)
+      ->required()
+      ->type_name("ROUTE");
+}
+
+void AddStrideOption(CLI::App& command, int& stride) {
+  command
+      .add_option("--stride", stride,
+                  "Distance of lattice nodes in cells (default 50)")
+      ->check(CLI::Range(1, TerrainMap::kMaxSide))
+      ->type_name("N");
 }
 
 void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
@@ -78,14 +97,15 @@ void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
   AddCellOption(command, "--goal", arguments.goal, "Goal cell");
 }
 
-Result<TerrainMap> LoadProblem(const ProblemArguments& arguments) {
-  Result<MapFile> file = ReadMap(arguments.map.path, arguments.map.options);
+Result<TerrainMap> LoadMap(const MapArguments& arguments) {
+  Result<MapFile> file = ReadMap(arguments.path, arguments.options);
   if (!file.ok()) return file.error();
-  const Status start = CheckEnd(file->map, "start", arguments.start);
-  if (!start.ok()) return start.error();
-  const Status goal = CheckEnd(file->map, "goal", arguments.goal);
-  if (!goal.ok()) return goal.error();
   return std::move(file->map);
+}
+
+Status CheckEnds(const TerrainMap& map, const ProblemArguments& problem) {
+  const Status start = CheckEnd(map, "start", problem.start);
+  return start.ok() ? CheckEnd(map, "goal", problem.goal) : start;
 }
 
 }  // namespace terra::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "terrain/cell.h"
@@ -8,7 +9,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace terra::cli {
 
@@ -38,7 +40,18 @@ struct ProblemArguments {
 /// Adds the map's options, --start and --goal.
 void AddProblemOptions(CLI::App& command, ProblemArguments& arguments);
 
-/// Reads the map and checks that start and goal are passable cells of it.
-Result<TerrainMap> LoadProblem(const ProblemArguments& arguments);
+/// Adds a required option that takes a route text; set only when it is given.
+CLI::Option* AddRouteOption(CLI::App& command, const std::string& name,
+                            std::optional<Route>& route,
+                            const std::string& description);
+
+/// Adds --stride of the baseline's lattice.
+void AddStrideOption(CLI::App& command, int& stride);
+
+/// Reads the map.
+Result<TerrainMap> LoadMap(const MapArguments& arguments);
+
+/// Errors: start or goal is outside the map or impassable.
+Status CheckEnds(const TerrainMap& map, const ProblemArguments& problem);
 
 }  // namespace terra::cli

@@ -3,6 +3,7 @@ include(TerraFindLibrary)
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(LCM REQUIRED)  # cmake/FindLCM.cmake
+find_package(CLI11 REQUIRED)
 if(TERRA_BUILD_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

@@ -108,12 +108,17 @@ TerrainMap::TerrainMap(ByteRaster ids, Legend legend, CostModel model)
       legend_(std::move(legend)),
       model_(model),
       costs_(MakeCostTable(legend_)),
-      classes_(ids_.rows(), ids_.cols()) {
-  std::transform(ids_.data(), ids_.data() + ids_.size(), classes_.data(),
+      classes_(MakeClasses()),
+      cost_grid_(classes_, costs_) {}
+
+ByteRaster TerrainMap::MakeClasses() const {
+  ByteRaster classes(ids_.rows(), ids_.cols());
+  std::transform(ids_.data(), ids_.data() + ids_.size(), classes.data(),
                  [this](std::uint8_t id) {
                    return costs_.class_of_id[id];
                  });
-  ApplyClearance(classes_, model_.clearance_cells);
+  ApplyClearance(classes, model_.clearance_cells);
+  return classes;
 }
 
 }  // namespace terra

@@ -2,18 +2,14 @@
 
 #include <cstdint>
 
-#include <Eigen/Core>
-
 #include "terrain/cell.h"
+#include "terrain/cost_grid.h"
 #include "terrain/cost_table.h"
 #include "terrain/legend.h"
+#include "terrain/raster.h"
 #include "terrain/result.h"
 
 namespace terra {
-
-/// One byte per cell, row by row: raster(y, x). Row 0 is the top.
-using ByteRaster =
-    Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// How cells may be crossed, beyond their terrain.
 struct CostModel {
@@ -54,6 +50,8 @@ class TerrainMap {
   /// Cost class of each cell, clearance included; 0 = blocked.
   const ByteRaster& classes() const { return classes_; }
   const CostTable& costs() const { return costs_; }
+  /// The same costs with a blocked border, for searches and route walks.
+  const CostGrid& cost_grid() const { return cost_grid_; }
 
   /// The cell must be inside the map.
   bool Passable(Cell c) const { return classes_(c.y, c.x) != 0; }
@@ -61,12 +59,14 @@ class TerrainMap {
 
  private:
   TerrainMap(ByteRaster ids, Legend legend, CostModel model);
+  ByteRaster MakeClasses() const;
 
   ByteRaster ids_;
   Legend legend_;
   CostModel model_;
   CostTable costs_;
   ByteRaster classes_;
+  CostGrid cost_grid_;
 };
 
 }  // namespace terra

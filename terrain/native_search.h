@@ -1,21 +1,64 @@
 #pragma once
 
+#include <memory>
+
 #include "terrain/map.h"
 #include "terrain/search_result.h"
 
 namespace terra {
 
+/// How paths are found. All ways find the same costs.
+enum class SearchMethod {
+  kAutomatic,  ///< Whichever is expected to be faster.
+  kBuckets,    ///< A* with a bucket queue.
+};
+
+/// The smallest keys (search_keys.h) that a search may add up; it takes wider
+/// ones by itself where these do not hold the result.
+enum class KeyWidth { kNarrow, kWide, kDouble };
+
 /// What a native search may be told.
 struct NativeSearchOptions {
   /// Cost of a known route between the ends (the baseline's): paths that cannot
-  /// be cheaper need not be looked at. A route of exactly this cost is found.
+  /// be cheaper need not be looked at. A route of exactly this cost is found;
+  /// if there is none of this cost or below, the status is kNoRoute.
   double upper_bound = kImpassable;
+
+  /// For tests and measurements; the defaults are right for everybody else.
+  SearchMethod method = SearchMethod::kAutomatic;
+  KeyWidth keys = KeyWidth::kNarrow;
 };
 
-/// Finds a cheapest 8-connected path on all cells, exactly.
+/// Finds cheapest 8-connected paths on all cells, exactly, one after another in
+/// the same memory.
 ///
-/// Under the paper's cost model (corner cutting on) its cost is a lower bound
-/// of every feasible route. Threads: reentrant.
+/// Under the paper's cost model (corner cutting on) a path's cost is a lower
+/// bound of every feasible route. Where CostGrid::holds_units() costs are
+/// compared exactly; otherwise in doubles, so that paths of equal cost may be
+/// told apart by rounding.
+///
+/// Threads: one search at a time each.
+class NativeSearcher {
+ public:
+  NativeSearcher();
+  NativeSearcher(NativeSearcher&&) noexcept;
+  NativeSearcher& operator=(NativeSearcher&&) noexcept;
+  ~NativeSearcher();
+
+  SearchResult Search(const TerrainMap& map, Cell start, Cell goal,
+                      const NativeSearchOptions& options = {});
+
+  /// Memory kept for the next search.
+  std::size_t bytes() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+/// The same with a searcher per thread, which keeps up to 64 MB between calls.
+///
+/// Threads: reentrant.
 SearchResult NativeSearch(const TerrainMap& map, Cell start, Cell goal,
                           const NativeSearchOptions& options = {});
 

@@ -6,6 +6,7 @@
 
 #include "terrain/cell.h"
 #include "terrain/map.h"
+#include "terrain/route_cost.h"
 
 namespace terra::verifier {
 

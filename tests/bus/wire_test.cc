@@ -92,7 +92,9 @@ TYPED_TEST(EveryMessageTypeTest, SurvivesHostileCountsEverywhere) {
         bytes[at + i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
       }
       const Result<TypeParam> decoded = Decode<TypeParam>(bytes);
-      if (decoded) EXPECT_EQ(Encode(*decoded), bytes);
+      if (decoded) {
+        EXPECT_EQ(Encode(*decoded), bytes);
+      }
     }
   }
 }
@@ -109,7 +111,9 @@ TYPED_TEST(EveryMessageTypeTest, SurvivesRandomDamage) {
     }
     bytes.resize(static_cast<std::size_t>(random.Int(8, size)));
     const Result<TypeParam> decoded = Decode<TypeParam>(bytes);
-    if (decoded) EXPECT_EQ(Encode(*decoded), bytes);
+    if (decoded) {
+      EXPECT_EQ(Encode(*decoded), bytes);
+    }
   }
 }
 

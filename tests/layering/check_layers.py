@@ -62,7 +62,8 @@ def problem(path, included):
     own = folder_of(path)
     if target == own:
         is_node = NODE_FILE.search(path)
-        if NODE_FILE.search(included) and not is_node and own != "bus":
+        if (NODE_FILE.search(included) and not is_node
+                and own not in ("bus", "cli")):
             return "pure code includes process code"
         return None
     allowed = set(ALLOWED[own])

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "terrain/cell.h"
+#include "terrain/map.h"
+
+namespace terra::advisor {
+
+/// What an advisor is asked about. Values and a map that stays alive.
+struct AdviceTask {
+  const TerrainMap& map;
+  std::int64_t map_id = 0;
+  std::int64_t request_id = 0;
+  Cell start;
+  Cell goal;
+  Route baseline;  ///< Feasible on the map; from start to goal.
+  double baseline_cost = 0;
+};
+
+/// Numbers are those of advice_t.
+enum class AnswerKind : std::int8_t {
+  kRetain = 1,
+  kPropose = 2,
+  kMalformed = 3,
+  kFailed = 4,
+};
+enum class AnswerForm : std::int8_t { kNone = 0, kExact = 1, kTolerated = 2 };
+
+/// One candidate of an answer.
+struct Candidate {
+  Route route;
+  bool polished = false;
+};
+
+/// What came of it. Evidence fields stay empty where they have no meaning.
+struct AdviceAnswer {
+  AnswerKind kind = AnswerKind::kFailed;
+  AnswerForm form = AnswerForm::kNone;
+  std::vector<Candidate> candidates;  ///< In the answer's order; kPropose only.
+  std::string model;
+  std::string request_hash;
+  std::string answer_text;
+  std::string error;
+  std::int64_t tokens_in = 0;
+  std::int64_t tokens_out = 0;
+  double spend_usd = 0;
+  std::int64_t t_prep_us = 0;
+  std::int64_t t_llm_us = 0;
+};
+
+/// A way of finding better routes. May take long and may fail.
+/// Threads: Advise is called from one worker thread; it returns early, with any
+///          answer, when `stop` is requested.
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  virtual std::string name() const = 0;    ///< "search", "openai", ...
+  virtual std::string method() const = 0;  ///< "refiner", "advisor", ...
+  virtual AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) = 0;
+};
+
+}  // namespace terra::advisor

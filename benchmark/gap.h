@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "planner/coarse_lattice.h"
+#include "terrain/cell.h"
+#include "terrain/files/dataset.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra::benchmark {
+
+struct GapOptions {
+  std::vector<int> strides{10, 20, 50, 100};
+  planner::JointRule joints = planner::JointRule::kTwoStrides;
+  CostModel cost_model;
+  int jobs = 0;  ///< 0 = all cores.
+};
+
+/// What the lattice costs at each stride, beside the native optimum. Costs are
+/// kImpassable where there is no route (or an end is blocked or outside).
+struct CaseGap {
+  std::vector<double> baseline_costs;  ///< In order of the strides.
+  double oracle_cost = kImpassable;
+};
+CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
+                   const GapOptions& options);
+
+/// Measures every case of a dataset, in its order. Errors: a map that cannot be
+/// read.
+Result<std::vector<CaseGap>> MeasureGaps(const Dataset& dataset,
+                                         const GapOptions& options);
+
+/// A row of the paper's oracle-gap table, without MOGR.
+struct GapSummary {
+  std::string group;
+  int stride = 0;
+  std::int64_t paths = 0;
+  std::int64_t comparable = 0;  ///< Baseline and oracle exist.
+  std::int64_t gaps = 0;        ///< Baseline > oracle + epsilon.
+  double mean_gap = 0;          ///< Of the gaps, relative to the baseline.
+};
+std::vector<GapSummary> SummarizeGaps(const std::vector<DatasetCase>& cases,
+                                      const std::vector<CaseGap>& gaps,
+                                      const GapOptions& options);
+
+/// Writes case_id, stride, baseline_cost, oracle_cost.
+Status WriteGaps(const std::vector<DatasetCase>& cases,
+                 const std::vector<CaseGap>& gaps, const GapOptions& options,
+                 const std::string& path);
+
+}  // namespace terra::benchmark

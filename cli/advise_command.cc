@@ -1,0 +1,182 @@
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "advisor/refiner_backend.h"
+#include "cli/commands.h"
+#include "cli/map_arguments.h"
+#include "cli/output.h"
+#include "planner/coarse_lattice.h"
+#include "terrain/files/csv.h"
+#include "terrain/route_text.h"
+#include "verifier/verify.h"
+
+namespace terra::cli {
+namespace {
+
+using advisor::AdviceAnswer;
+using advisor::AnswerKind;
+using verifier::Code;
+
+struct AdviseArguments {
+  ProblemArguments problem;
+  std::string backend = "search";
+  planner::LatticeOptions lattice;
+  std::optional<Route> baseline;  // Instead of the lattice's.
+  bool json = false;
+};
+
+// One run of an advisor and what the gate would make of it.
+struct Advised {
+  Route baseline;
+  double baseline_cost = kImpassable;
+  Code code = Code::kNotChecked;
+  Route candidate;  // Empty when the advisor proposed none.
+  double candidate_cost = kImpassable;
+  double seconds = 0;  // Of the advisor alone.
+};
+
+Result<Route> BaselineFor(const AdviseArguments& arguments,
+                          const TerrainMap& map) {
+  const ProblemArguments& problem = arguments.problem;
+  if (arguments.baseline) return *arguments.baseline;
+  planner::LatticePlan plan = planner::PlanOnLattice(
+      map, problem.start, problem.goal, arguments.lattice);
+  if (plan.found()) return std::move(plan.waypoints);
+  return Error{ErrorCode::kNotFound,
+               "there is no baseline on the lattice of stride " +
+                   std::to_string(arguments.lattice.stride) +
+                   "; try a smaller --stride, or give a --baseline"};
+}
+
+// The cheapest candidate that the gate would accept, else the first one.
+void JudgeCandidates(const AdviceAnswer& answer, const TerrainMap& map,
+                     const ProblemArguments& problem, Advised& advised) {
+  for (const advisor::Candidate& candidate : answer.candidates) {
+    const verifier::Comparison result = verifier::CompareRoutes(
+        map, problem.start, problem.goal, advised.baseline, candidate.route);
+    const bool better =
+        result.accepted() && result.candidate.cost < advised.candidate_cost;
+    if (advised.code != Code::kNotChecked && !better) continue;
+    advised.code = result.code;
+    advised.candidate = candidate.route;
+    advised.candidate_cost = result.candidate.cost;
+  }
+}
+
+Result<Advised> Advise(const AdviseArguments& arguments,
+                       const TerrainMap& map) {
+  const ProblemArguments& problem = arguments.problem;
+  Advised advised;
+  Result<Route> baseline = BaselineFor(arguments, map);
+  if (!baseline.ok()) return baseline.error();
+  advised.baseline = *std::move(baseline);
+  const verifier::RouteCheck check =
+      verifier::CheckRoute(map, advised.baseline, problem.start, problem.goal);
+  if (!check.feasible()) {
+    return Error{ErrorCode::kInvalid,
+                 "the baseline is not feasible: " +
+                     std::string(verifier::CodeName(check.code))};
+  }
+  advised.baseline_cost = check.cost;
+
+  const auto backend = advisor::MakeRefinerBackend(arguments.backend);
+  const auto begin = std::chrono::steady_clock::now();
+  const AdviceAnswer answer = backend->Advise(
+      {map, 0, 0, problem.start, problem.goal, advised.baseline, check.cost},
+      {});
+  advised.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
+          .count();
+  switch (answer.kind) {
+    case AnswerKind::kRetain:
+      advised.code = Code::kRetained;
+      break;
+    case AnswerKind::kPropose:
+      JudgeCandidates(answer, map, problem, advised);
+      break;
+    case AnswerKind::kMalformed:
+      advised.code = Code::kParseError;
+      break;
+    case AnswerKind::kFailed:
+      return Error{ErrorCode::kUnavailable,
+                   "the advisor gave no answer: " + answer.error};
+  }
+  return advised;
+}
+
+const char* DeployedRoute(const Advised& advised) {
+  return advised.code == Code::kAccepted ? "candidate" : "baseline";
+}
+
+void PrintJson(const Advised& advised) {
+  const nlohmann::ordered_json json = {
+      {"code", verifier::CodeName(advised.code)},
+      {"candidate_cost", JsonCost(advised.candidate_cost)},
+      {"baseline_cost", JsonCost(advised.baseline_cost)},
+      {"deployed", DeployedRoute(advised)},
+      {"waypoints", JsonRoute(advised.candidate)},
+      {"baseline", JsonRoute(advised.baseline)},
+      {"seconds", advised.seconds}};
+  std::cout << json.dump() << "\n";
+}
+
+void PrintText(const Advised& advised) {
+  std::cout << "verdict    " << verifier::CodeName(advised.code) << "\n"
+            << "deployed   " << DeployedRoute(advised) << "\n"
+            << "baseline   cost " << FormatNumber(advised.baseline_cost) << ", "
+            << FormatRoute(advised.baseline) << "\n";
+  if (!advised.candidate.empty()) {
+    std::cout << "candidate  cost " << FormatNumber(advised.candidate_cost)
+              << ", " << FormatRoute(advised.candidate) << "\n";
+  }
+  std::cout << "seconds    " << advised.seconds << "\n";
+}
+
+int RunAdvise(const AdviseArguments& arguments) {
+  const ProblemArguments& problem = arguments.problem;
+  const Result<TerrainMap> map = LoadMap(problem.map);
+  if (!map.ok()) return Fail(map.error());
+  const Status ends = CheckEnds(*map, problem);
+  if (!ends.ok()) return Fail(ends.error());
+  const Result<Advised> advised = Advise(arguments, *map);
+  if (!advised.ok()) return Fail(advised.error());
+  if (arguments.json) {
+    PrintJson(*advised);
+  } else {
+    PrintText(*advised);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddAdviseCommand(CLI::App& app, int& exit_code) {
+  CLI::App& command = *app.add_subcommand(
+      "advise", "Run one advisor on one case, without the bus");
+  const auto arguments = std::make_shared<AdviseArguments>();
+  AddProblemOptions(command, arguments->problem);
+  command
+      .add_option("--backend", arguments->backend,
+                  "Which advisor (default search)")
+      ->check(CLI::IsMember(advisor::RefinerBackendNames()))
+      ->type_name("B");
+  AddStrideOption(command, arguments->lattice.stride);
+  AddRouteOption(command, "--baseline", arguments->baseline,
+                 "Baseline to improve (default: the lattice's)")
+      ->required(false);
+  command.add_flag("--json", arguments->json, "Print JSON");
+  command.footer(
+      "Example:\n"
+      "  terra advise --map park.png --start 20,20 --goal 480,460 --backend "
+      "shortcut");
+  command.callback([arguments, &exit_code] {
+    exit_code = RunAdvise(*arguments);
+  });
+}
+
+}  // namespace terra::cli

@@ -1,0 +1,107 @@
+#include "cli/request_node.h"
+
+#include <algorithm>
+
+namespace terra::cli {
+namespace {
+
+using terra_msg::baseline_t;
+using terra_msg::deployed_t;
+
+// A picture wants the map; no set takes longer to send one.
+constexpr bus::Duration kMapPatience = std::chrono::seconds(20);
+constexpr std::size_t kMaxVerdicts = 1'000;
+
+}  // namespace
+
+RequestNode::RequestNode(const RequestPlan& plan, bus::Outbox& out)
+    : plan_(plan), out_(out), map_(out) {
+  request_.request_id = plan.request_id;
+  request_.action = terra_msg::plan_request_t::ACTION_GO;
+  request_.map_id = plan.map_id;
+  request_.start_x = plan.start.x;
+  request_.start_y = plan.start.y;
+  request_.goal_x = plan.goal.x;
+  request_.goal_y = plan.goal.y;
+  Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
+    map_.OnHeader(message, now);
+  });
+  Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
+    map_.OnTiles(message, now);
+  });
+  Listen<baseline_t>([this](const auto& message, bus::Time now) {
+    OnBaseline(message, now);
+  });
+  Listen<deployed_t>([this](const auto& message, bus::Time now) {
+    OnDeployed(message, now);
+  });
+  Listen<terra_msg::verdict_t>([this](const auto& message, bus::Time) {
+    OnVerdict(message);
+  });
+}
+
+void RequestNode::OnBaseline(const baseline_t& message, bus::Time now) {
+  if (!planner_.Accept(message.session, message.seq) ||
+      message.request_id != plan_.request_id) {
+    return;
+  }
+  if (!baseline_ms_) baseline_ms_ = MillisecondsSinceStart(now);
+  baseline_ = message;
+}
+
+void RequestNode::OnDeployed(const deployed_t& message, bus::Time now) {
+  if (!gate_.Accept(message.session, message.seq) ||
+      message.request_id != plan_.request_id) {
+    return;
+  }
+  const bool has_route = message.mode == deployed_t::MODE_BASELINE ||
+                         message.mode == deployed_t::MODE_CANDIDATE;
+  if (has_route && !deployed_ms_) deployed_ms_ = MillisecondsSinceStart(now);
+  if (message.mode == deployed_t::MODE_CANDIDATE && !refined_ms_) {
+    refined_ms_ = MillisecondsSinceStart(now);
+  }
+  deployed_ = message;
+}
+
+void RequestNode::OnVerdict(const terra_msg::verdict_t& message) {
+  if (message.request_id == plan_.request_id &&
+      verdicts_.size() < kMaxVerdicts) {
+    verdicts_.push_back(message);
+  }
+}
+
+bool RequestNode::Answered() const {
+  return baseline_ && deployed_;
+}
+
+// Nothing more is to be waited for.
+bool RequestNode::Settled() const {
+  if (!Answered()) return false;
+  if (baseline_->status != baseline_t::STATUS_OK) return true;
+  const bool advised =
+      std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& verdict) {
+        return verdict.subject == terra_msg::verdict_t::SUBJECT_ADVICE &&
+               verdict.code != terra_msg::verdict_t::CODE_ACCEPTED;
+      });
+  return refined_ms_.has_value() || advised;
+}
+
+double RequestNode::MillisecondsSinceStart(bus::Time now) const {
+  return std::chrono::duration<double, std::milli>(now - started_at_).count();
+}
+
+bus::Time RequestNode::Advance(bus::Time now) {
+  if (started_at_ == bus::kNever) started_at_ = now;
+  if (repeat_.Due(now) && (!Answered() || plan_.keep)) out_.Send(request_);
+  const bool map_is_here = !plan_.want_map || map_.map() != nullptr;
+  const bool time_is_up = now >= started_at_ + plan_.wait;
+  const bool map_time_is_up = now >= started_at_ + plan_.wait + kMapPatience;
+  if (!plan_.keep && (Settled() || time_is_up) &&
+      (map_is_here || map_time_is_up)) {
+    done_ = true;
+  }
+  const bus::Time map_due = plan_.want_map ? map_.Advance(now) : bus::kNever;
+  return std::min(repeat_.next(), map_due);
+}
+
+}  // namespace terra::cli

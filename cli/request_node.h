@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/map_receiver.h"
+#include "bus/node.h"
+#include "bus/time.h"
+
+namespace terra::cli {
+
+/// What `terra request` asks and how long it waits.
+struct RequestPlan {
+  std::int64_t request_id = 0;
+  Cell start;
+  Cell goal;
+  std::int64_t map_id = 0;  ///< 0 = the map in force.
+  bus::Duration wait{};     ///< For the refined route.
+  bool keep = false;        ///< Go on asking until stopped.
+  bool want_map = false;    ///< Wait for the map too: a picture is wanted.
+};
+
+/// Asks the running set for a route and follows what becomes of it.
+///
+/// Repeats PLAN_REQUEST 5 times a second until a BASELINE and a DEPLOYED both
+/// name its id. Ends when a candidate is deployed, when an advisor's answer was
+/// refused or retained, or when the time is up.
+class RequestNode : public bus::Node {
+ public:
+  RequestNode(const RequestPlan& plan, bus::Outbox& out);
+
+  bus::Time Advance(bus::Time now) override;
+  std::string state() const override { return "asking"; }
+  bool done() const override { return done_; }
+
+  /// Milliseconds after the first request; nothing where it never came.
+  using Latency = std::optional<double>;
+
+  const std::optional<terra_msg::baseline_t>& baseline() const {
+    return baseline_;
+  }
+  const std::optional<terra_msg::deployed_t>& deployed() const {
+    return deployed_;
+  }
+  const std::vector<terra_msg::verdict_t>& verdicts() const {
+    return verdicts_;
+  }
+  Latency baseline_ms() const { return baseline_ms_; }
+  Latency deployed_ms() const { return deployed_ms_; }
+  Latency refined_ms() const { return refined_ms_; }
+  const bus::MapReceiver& map() const { return map_; }
+
+ private:
+  void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
+  void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);
+  void OnVerdict(const terra_msg::verdict_t& message);
+  bool Answered() const;
+  bool Settled() const;
+  double MillisecondsSinceStart(bus::Time now) const;
+
+  RequestPlan plan_;
+  bus::Outbox& out_;
+  bus::MapReceiver map_;
+  bus::SenderTracker planner_;
+  bus::SenderTracker gate_;
+  terra_msg::plan_request_t request_{};
+  bus::Periodic repeat_{bus::kStatePeriod};
+  bus::Time started_at_ = bus::kNever;
+  std::optional<terra_msg::baseline_t> baseline_;
+  std::optional<terra_msg::deployed_t> deployed_;
+  std::vector<terra_msg::verdict_t> verdicts_;
+  Latency baseline_ms_;
+  Latency deployed_ms_;
+  Latency refined_ms_;
+  bool done_ = false;
+};
+
+}  // namespace terra::cli

@@ -1,0 +1,228 @@
+// `terra` as people use it: what it prints, what it says when something is
+// wrong, and how it exits.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/child_process.h"
+#include "tests/support/temp_folder.h"
+
+namespace terra {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::RunResult;
+using ::testing::StartsWith;
+
+RunResult Terra(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {testing::ProgramPath("terra")};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return testing::RunToEnd(command);
+}
+
+// A 5 x 3 MovingAI map: a wall in the middle column, open at the top.
+class TerraCommand : public ::testing::Test {
+ protected:
+  RunResult OnMap(std::vector<std::string> arguments,
+                  const std::string& start = "0,2",
+                  const std::string& goal = "4,2") {
+    arguments.insert(arguments.end(),
+                     {"--map", map_, "--start", start, "--goal", goal});
+    return Terra(arguments);
+  }
+
+  testing::TempFolder folder_;
+  std::string map_ = folder_.Write("wall.map",
+                                   "type octile\nheight 3\nwidth 5\nmap\n"
+                                   ".....\n..@..\n..@..\n");
+};
+
+TEST_F(TerraCommand, OraclePrintsCostAndRouteAsJson) {
+  const RunResult run = OnMap({"oracle", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_NEAR(json["cost"].get<double>(), 4 * std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(json["waypoints"].front(), nlohmann::json({0, 2}));
+  EXPECT_EQ(json["waypoints"].back(), nlohmann::json({4, 2}));
+  EXPECT_TRUE(json.contains("expanded") && json.contains("seconds"));
+}
+
+TEST_F(TerraCommand, NoRouteIsJsonWithNullAndExitOne) {
+  folder_.Write("wall.map",
+                "type octile\nheight 3\nwidth 5\nmap\n"
+                "..@..\n..@..\n..@..\n");
+  for (const char* command : {"plan", "oracle"}) {
+    const RunResult run = OnMap({command, "--json"});
+    EXPECT_EQ(run.exit_code, 1) << command;
+    EXPECT_THAT(run.output, StartsWith("{\"cost\":null,\"waypoints\":[]"))
+        << command;
+  }
+}
+
+TEST_F(TerraCommand, CornerCuttingOffGoesAround) {
+  folder_.Write("wall.map",
+                "type octile\nheight 3\nwidth 3\nmap\n"
+                ".@.\n@..\n...\n");
+  EXPECT_EQ(OnMap({"oracle"}, "0,0", "2,2").exit_code, 0);
+  EXPECT_EQ(
+      OnMap({"oracle", "--corner-cutting", "off"}, "0,0", "2,2").exit_code, 1);
+}
+
+TEST_F(TerraCommand, StartOnAnObstacleIsNamed) {
+  const RunResult run = OnMap({"plan"}, "2,1");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("start (2, 1) is on impassable ground"));
+}
+
+TEST_F(TerraCommand, GoalOutsideTheMapIsNamedWithTheLimits) {
+  const RunResult run = OnMap({"oracle"}, "0,0", "5,0");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("goal (5, 0) is outside the map; x is 0 "
+                                    "to 4, y is 0 to 2"));
+}
+
+TEST_F(TerraCommand, MissingMapIsNamed) {
+  const RunResult run = Terra(
+      {"plan", "--map", "/nowhere.png", "--start", "0,0", "--goal", "1,1"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("/nowhere.png: there is no such file"));
+}
+
+TEST_F(TerraCommand, VerifyNamesTheFirstFailingCell) {
+  const RunResult run =
+      OnMap({"verify", "--baseline", "[(0, 2), (2, 0), (4, 2)]", "--candidate",
+             "[(0, 2), (4, 2)]", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_EQ(json["code"], "obstacle");
+  EXPECT_EQ(json["deployed"], "baseline");
+  EXPECT_EQ(json["candidate_cost"], nullptr);
+  EXPECT_EQ(json["candidate"]["cell"], nlohmann::json({2, 2}));
+}
+
+TEST_F(TerraCommand, VerifyTakesACandidateThatCannotBeReadAsAVerdict) {
+  const RunResult run =
+      OnMap({"verify", "--baseline", "[(0, 2), (2, 0), (4, 2)]", "--candidate",
+             "[(0, 2), (4", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(nlohmann::json::parse(run.output)["code"], "parse_error");
+}
+
+TEST_F(TerraCommand, EqualCostIsNotCheaper) {
+  const RunResult run =
+      OnMap({"verify", "--baseline", "[(0, 2), (2, 0), (4, 2)]", "--candidate",
+             "[(0, 2), (2, 0), (4, 2)]", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.output)["code"], "not_cheaper");
+}
+
+TEST_F(TerraCommand, InvalidBaselineIsAnErrorWithItsVerdict) {
+  const RunResult run = OnMap({"verify", "--baseline", "[(0, 2), (4, 2)]",
+                               "--candidate", "[(0, 2), (2, 0), (4, 2)]"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("baseline_invalid"));
+  EXPECT_THAT(run.output, HasSubstr("the baseline is not feasible"));
+}
+
+TEST_F(TerraCommand, AdviseBeatsADearBaselineAndRetainsAnOptimalOne) {
+  const std::string detour = "[(0, 2), (0, 0), (4, 0), (4, 2)]";
+  for (const char* backend : {"search", "shortcut"}) {
+    const RunResult run =
+        OnMap({"advise", "--backend", backend, "--baseline", detour, "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const auto json = nlohmann::json::parse(run.output);
+    EXPECT_EQ(json["code"], "accepted") << backend;
+    EXPECT_LT(json["candidate_cost"], json["baseline_cost"]) << backend;
+  }
+  const RunResult run =
+      OnMap({"advise", "--backend", "search", "--stride", "1", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.output)["code"], "retained");
+}
+
+TEST_F(TerraCommand, RenderWritesAPicture) {
+  const std::string out = folder_.Path("out.png");
+  const RunResult run = Terra({"render", "--map", map_, "--route",
+                               "[(0, 2), (2, 0), (4, 2)]", "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(testing::ReadBytes(out), StartsWith("\x89PNG"));
+}
+
+TEST_F(TerraCommand, PictureThatCannotBeWrittenIsAnError) {
+  const RunResult run =
+      Terra({"render", "--map", map_, "--out", "/nowhere/out.png"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("/nowhere/out.png"));
+}
+
+TEST_F(TerraCommand, DatasetRoutesWithAnUnknownCaseNameTheLine) {
+  folder_.Write("cases.csv",
+                "case_id,map,start_x,start_y,goal_x,goal_y\n"
+                "a,wall.map,0,2,4,2\n");
+  folder_.Write("routes.csv",
+                "case_id,k,route\na,1,\"[(0, 2), (2, 0), (4, 2)]\"\n"
+                "b,1,\"[(0, 2), (4, 2)]\"\n");
+  const RunResult run =
+      Terra({"verify", "--dataset", folder_.Path(""), "--routes",
+             folder_.Path("routes.csv"), "--out", folder_.Path("out.csv")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("routes.csv:3"));
+}
+
+TEST(TerraUsage, WrongUsageExitsWithTwoAndPointsToHelp) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"fly"},
+      {"plan"},
+      {"plan", "--map", "m.png", "--start", "1;2", "--goal", "3,4"},
+      {"plan", "--map", "m.png", "--start", "1,2", "--goal", "3,4", "--stride",
+       "0"},
+      {"verify", "--map", "m.png"},
+      {"render", "--map", "m.png"},
+      {"advise", "--backend", "magic"},
+      {"request", "--start", "1,2"},
+  };
+  for (const std::vector<std::string>& arguments : wrong) {
+    const RunResult run = Terra(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("--help"));
+  }
+}
+
+TEST(TerraUsage, EveryCommandHasAnExample) {
+  for (const char* command :
+       {"plan", "oracle", "verify", "advise", "render", "request"}) {
+    const RunResult run = Terra({command, "--help"});
+    EXPECT_EQ(run.exit_code, 0) << command;
+    EXPECT_THAT(run.output, HasSubstr(std::string("terra ") + command + " "))
+        << command;
+  }
+}
+
+TEST(TerraUsage, ProgramsOnTheBusRefuseUnknownOptionsAndConfigKeys) {
+  const testing::TempFolder folder;
+  const std::string config = folder.Write("bad.toml", "strude = 50\n");
+  const std::string planner = testing::ProgramPath("terra-planner");
+  EXPECT_EQ(testing::RunToEnd({planner, "--strude", "50"}).exit_code, 2);
+  const RunResult run = testing::RunToEnd({planner, "--config", config});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.output, HasSubstr("strude"));
+}
+
+TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
+  const testing::TempFolder folder;
+  const std::string planner = testing::ProgramPath("terra-planner");
+  const RunResult first =
+      testing::RunToEnd({planner, "--stride", "25", "--print-config"});
+  ASSERT_EQ(first.exit_code, 0);
+  EXPECT_THAT(first.output, HasSubstr("stride=25"));
+  const std::string config = folder.Write("planner.toml", first.output);
+  EXPECT_EQ(
+      testing::RunToEnd({planner, "--config", config, "--print-config"}).output,
+      first.output);
+}
+
+}  // namespace
+}  // namespace terra

@@ -1,0 +1,100 @@
+#include "terrain/files/csv.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/error_message.h"
+#include "tests/support/random_map.h"
+#include "tests/support/temp_folder.h"
+
+namespace terra {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::ErrorMessage;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Csv, FieldsMayBeQuoted) {
+  const auto table = ParseCsv("a,b\n\"x, y\",\"he said \"\"no\"\"\"\n", "t");
+  ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+  EXPECT_THAT(table->rows[0].fields, ElementsAre("x, y", "he said \"no\""));
+}
+
+TEST(Csv, LineEndsByteOrderMarkAndEmptyLinesDoNotMatter) {
+  const auto table = ParseCsv(
+      "\xEF\xBB\xBF"
+      "a,b\r\n\r\n1,2\r\n\n3,",
+      "t");
+  ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+  EXPECT_EQ(table->Column("a"), 0);
+  EXPECT_EQ(table->Column("c"), -1);
+  ASSERT_EQ(table->rows.size(), 2U);
+  EXPECT_EQ(table->rows[1].line, 5);
+  EXPECT_THAT(table->rows[1].fields, ElementsAre("3", ""));
+}
+
+TEST(Csv, AQuotedLineBreakKeepsTheLineNumbersRight) {
+  const auto table = ParseCsv("a\n\"1\n2\"\n3\n", "t");
+  ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+  EXPECT_EQ(table->rows[1].line, 4);
+}
+
+TEST(Csv, ErrorsNameTheFileAndTheLine) {
+  EXPECT_THAT(ErrorMessage(ParseCsv("a,b\n1,2\n1,2,3\n", "t.csv")),
+              StartsWith("t.csv:3: 3 fields where the header has 2"));
+  EXPECT_THAT(ErrorMessage(ParseCsv("a\n\"1\n", "t.csv")),
+              StartsWith("t.csv:2: a quote is not closed"));
+  EXPECT_THAT(ErrorMessage(ParseCsv("a\n1\"2\n", "t.csv")),
+              StartsWith("t.csv:2: a quote inside"));
+  EXPECT_THAT(ErrorMessage(ParseCsv("a\n\"1\"2\n", "t.csv")),
+              StartsWith("t.csv:2: text behind"));
+  EXPECT_THAT(ErrorMessage(ParseCsv("a,a\n", "t.csv")), HasSubstr("twice"));
+  EXPECT_THAT(ErrorMessage(ParseCsv("\n", "t.csv")), HasSubstr("no header"));
+}
+
+TEST(Csv, AMissingColumnIsNamed) {
+  const testing::TempFolder folder;
+  const std::string path = folder.Write("r.csv", "case_id,route\n");
+  EXPECT_THAT(ErrorMessage(ReadCsv(path, {"case_id", "k"})),
+              HasSubstr("no column 'k'"));
+}
+
+TEST(Csv, WhatIsWrittenIsReadBack) {
+  testing::Random random(7);
+  const std::string alphabet = "ab,\"\n\r ;";
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::string> fields(3);
+    for (std::string& field : fields) {
+      for (int i = random.Int(1, 6); i > 0; --i) {
+        field += alphabet[static_cast<std::size_t>(random.Int(0, 7))];
+      }
+    }
+    const auto table = ParseCsv("x,y,z\n" + CsvLine(fields), "t");
+    ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+    EXPECT_EQ(table->rows.at(0).fields, fields);
+  }
+}
+
+TEST(Csv, NumbersKeepEveryBitAndInfinity) {
+  for (const double value : {0.1, 1e300, 2827.410314079376, 1.0 / 3}) {
+    EXPECT_EQ(ParseNumber(FormatNumber(value)).value(), value);
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(FormatNumber(kInfinity), "inf");
+  EXPECT_EQ(ParseNumber("inf").value(), kInfinity);
+}
+
+TEST(Csv, WhatIsNoNumberIsRefused) {
+  for (const char* text : {"", "x", "1x", " 1", "nan", "1e999", "-"}) {
+    EXPECT_FALSE(ParseNumber(text).ok()) << text;
+  }
+  for (const char* text : {"", "1.5", "99999999999", "0x1", "+1"}) {
+    EXPECT_FALSE(ParseInteger(text).ok()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace terra

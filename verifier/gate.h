@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "terrain/map.h"
+#include "verifier/gate_memory.h"
+#include "verifier/gate_messages.h"
+#include "verifier/verify.h"
+
+namespace terra::verifier {
+
+struct GateOptions {
+  /// A candidate must beat the deployed route by more than this, in cost.
+  double margin = 0;
+};
+
+/// What the gate counted; monotone within a session.
+struct GateCounters {
+  std::int64_t judged = 0;
+  std::int64_t accepted = 0;
+  std::int64_t repeats = 0;        ///< Advice that already has its verdict.
+  std::int64_t unknown_key = 0;    ///< Advice for what the gate does not hold.
+  std::int64_t failed_advice = 0;  ///< Advisors that had no answer.
+  std::int64_t invalid_baselines = 0;
+  std::int64_t other_baselines = 0;  ///< For another request or map.
+};
+
+/// Decides what is deployed: a state machine over events, without clock, I/O or
+/// unbounded memory. The same events in the same order give the same decisions.
+///
+/// docs/gate.md states its rules and the invariants that the tests hold it to.
+/// Threads: one.
+class Gate {
+ public:
+  explicit Gate(GateOptions options = {}) : options_(options) {}
+
+  Decisions On(const MapEvent& event);
+  Decisions On(const RequestEvent& event);
+  Decisions On(const BaselineEvent& event);
+  Decisions On(const AdviceEvent& event);
+
+  /// What is in force, to be repeated while it is; request_id 0 = nothing yet.
+  const Deployed& deployed() const { return deployed_; }
+  const GateCounters& counters() const { return counters_; }
+  bool has_map() const { return map_ != nullptr; }
+
+ private:
+  struct Request {
+    std::int64_t id = 0;
+    bool cancelled = false;
+    Cell start;
+    Cell goal;
+  };
+
+  // The baseline of the current request, with what the gate found about it.
+  struct HeldBaseline {
+    BaselineEvent message;
+    RouteCheck check;
+  };
+
+  void Replace(const Request& request, Decisions& out);
+  void Cancel(Decisions& out);
+  bool Adopt(const BaselineEvent& event, Decisions& out);
+
+  bool Holds(const BaselineEvent& event) const;
+  void DropBaseline();
+  RouteCheck CheckBaseline(const BaselineEvent& event) const;
+  void OnNoRoute(Decisions& out);
+  void OnBadBaseline(Decisions& out);
+  void ReportBaseline(Decisions& out);
+  bool baseline_valid() const {
+    return baseline_ && baseline_->check.feasible();
+  }
+  void RecheckBaseline(Decisions& out);
+  void RecheckDeployed(Decisions& out);
+
+  void Deploy(Deployed next, Decisions& out);
+  void DeployBaseline(Cause cause, Decisions& out);
+  void DeployNothing(Mode mode, Cause cause, Decisions& out);
+  void KeepOnNewMap(double cost, Decisions& out);
+
+  // The verdict's code so far: kNotChecked = the key matches what is in force;
+  // nothing = the gate does not know what the advice speaks of.
+  std::optional<Code> CheckKey(const AdviceEvent& event) const;
+  void Judge(const AdviceEvent& event, Verdict& verdict) const;
+  void JudgeProposal(const AdviceEvent& event, Verdict& verdict) const;
+  Deployed Upgrade(const AdviceEvent& event, double cost) const;
+
+  GateOptions options_;
+  std::shared_ptr<const TerrainMap> map_;
+  std::int64_t map_id_ = 0;
+  Request request_;
+  std::optional<HeldBaseline> baseline_;
+  // The planner session that last named the current request.
+  std::int64_t answered_by_ = 0;
+  Deployed deployed_;
+  std::int64_t decisions_ = 0;
+  ReplacedIds replaced_requests_{64};
+  ReplacedIds replaced_maps_{64};
+  ReplacedIds replaced_baselines_{256};
+  // The advice bus lets 200 messages a second through, each repeated once a
+  // second: room for 20 s of a flood between two repetitions.
+  JudgedAdvice judged_{4'096};
+  GateCounters counters_;
+};
+
+}  // namespace terra::verifier

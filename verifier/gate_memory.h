@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <list>
+#include <map>
+#include <tuple>
+
+#include "verifier/gate_messages.h"
+
+namespace terra::verifier {
+
+/// Ids that were in force once; the oldest is forgotten first.
+class ReplacedIds {
+ public:
+  explicit ReplacedIds(std::size_t capacity) : capacity_(capacity) {}
+
+  /// 0 stands for "none" and is not remembered.
+  void Add(std::int64_t id);
+  bool Has(std::int64_t id) const;
+
+ private:
+  std::size_t capacity_;
+  std::deque<std::int64_t> ids_;
+};
+
+/// Which advice has had its verdict. What was not repeated for longest is
+/// forgotten first, so that a flood of new advice cannot push out advice that
+/// is still being repeated.
+class JudgedAdvice {
+ public:
+  explicit JudgedAdvice(std::size_t capacity) : capacity_(capacity) {}
+
+  /// Returns true the first time, false for a repeat.
+  bool Add(const AdviceEvent& event);
+
+ private:
+  // (request, map, baseline, session, attempt, candidate)
+  using Key = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::int64_t,
+                         std::int64_t, std::int32_t>;
+
+  std::size_t capacity_;
+  std::list<Key> by_age_;  // the longest unheard first
+  std::map<Key, std::list<Key>::iterator> known_;
+};
+
+}  // namespace terra::verifier

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "terrain/cell.h"
+#include "terrain/map.h"
+#include "verifier/verify.h"
+
+// What the gate takes and gives, as values: the message types of lcmtypes/
+// without time stamps, sender counters and what the gate does not read.
+namespace terra::verifier {
+
+// ---- Events: what the shell takes off the bus, lengths already checked. ----
+
+/// A complete map came into force.
+struct MapEvent {
+  std::shared_ptr<const TerrainMap> map;
+  std::int64_t map_id = 0;
+};
+
+/// PLAN_REQUEST.
+struct RequestEvent {
+  std::int64_t request_id = 0;
+  bool cancel = false;
+  Cell start;
+  Cell goal;
+};
+
+/// BASELINE, of the planner session in force (the shell drops replaced ones).
+struct BaselineEvent {
+  std::int64_t session = 0;
+  std::string planner;
+  std::int64_t request_id = 0;
+  Cell start;
+  Cell goal;
+  std::int64_t map_id = 0;
+  bool cancelled = false;  ///< The planner carries a cancelled request on.
+  bool has_route = false;  ///< Status OK; else the planner found none.
+  std::int64_t baseline_digest = 0;
+  Route waypoints;
+};
+
+/// Where a proposal starts: an index into the dense cells of a deployed route.
+struct Anchor {
+  std::int64_t session = 0;
+  std::int64_t route_seq = 0;
+  std::int32_t index = 0;
+  Cell cell;
+
+  friend bool operator==(const Anchor&, const Anchor&) = default;
+};
+
+/// What kind of answer an advisor has. Numbers are those of advice_t.
+enum class AdviceKind : std::int8_t {
+  kNone = 0,
+  kRetain = 1,
+  kPropose = 2,
+  kMalformed = 3,
+  kFailed = 4,
+};
+
+/// ADVICE.
+struct AdviceEvent {
+  std::int64_t session = 0;
+  std::string advisor;
+  std::int64_t attempt = 0;
+  std::int32_t candidate = 0;
+  std::int64_t request_id = 0;
+  std::int64_t map_id = 0;
+  std::int64_t baseline_digest = 0;
+  Anchor anchor;
+  AdviceKind kind = AdviceKind::kNone;
+  Route waypoints;
+};
+
+// ---- Decisions: what the shell publishes. ----
+
+/// Numbers are those of deployed_t.
+enum class Mode : std::int8_t {
+  kNone = 0,
+  kBaseline = 1,
+  kCandidate = 2,
+  kHold = 3,
+};
+enum class Cause : std::int8_t {
+  kNone = 0,
+  kNewRequest = 1,
+  kNewBaseline = 2,
+  kUpgrade = 3,
+  kMapUpdate = 4,
+  kRevertBlocked = 5,
+  kRevertNotCheaper = 6,
+  kBaselineInvalid = 7,
+  kCancelled = 8,
+  kNoRoute = 9,
+};
+
+/// DEPLOYED.
+struct Deployed {
+  std::int64_t decision = 0;
+  std::int64_t route_seq = 0;
+  std::int64_t request_id = 0;
+  Cell start;
+  Cell goal;
+  std::int64_t map_id = 0;
+  std::int64_t baseline_digest = 0;
+  Mode mode = Mode::kNone;
+  Cause cause = Cause::kNone;
+  std::string source;
+  std::int64_t source_session = 0;
+  std::int64_t source_attempt = 0;
+  std::int32_t source_candidate = 0;
+  Route waypoints;                     ///< Empty in modes none and hold.
+  double cost = kImpassable;           ///< Recomputed here.
+  double baseline_cost = kImpassable;  ///< Recomputed here.
+
+  bool has_route() const {
+    return mode == Mode::kBaseline || mode == Mode::kCandidate;
+  }
+  friend bool operator==(const Deployed&, const Deployed&) = default;
+};
+
+enum class Subject : std::int8_t { kAdvice = 1, kBaseline = 2 };
+
+/// VERDICT.
+struct Verdict {
+  std::int64_t decision = 0;
+  Subject subject = Subject::kAdvice;
+  std::int64_t request_id = 0;
+  std::int64_t map_id = 0;
+  std::int64_t baseline_digest = 0;
+  Anchor anchor;
+  std::string advisor;
+  std::int64_t advisor_session = 0;
+  std::int64_t attempt = 0;
+  std::int32_t candidate = 0;
+  Code code = Code::kNotChecked;
+  double candidate_cost = kImpassable;
+  double baseline_cost = kImpassable;
+  double cost_to_beat = kImpassable;
+  std::int64_t route_seq_before = 0;
+  int fail_segment = -1;
+  Cell fail_cell;
+
+  friend bool operator==(const Verdict&, const Verdict&) = default;
+};
+
+using Decision = std::variant<Verdict, Deployed>;
+using Decisions = std::vector<Decision>;
+
+}  // namespace terra::verifier

@@ -1,0 +1,70 @@
+// terra-verifier: the gate.
+// Listens to the map, PLAN_REQUEST, BASELINE and, on the advice bus, ADVICE;
+// publishes DEPLOYED, VERDICT, STATUS, CONFIG; exits when asked to (SIGINT,
+// SIGTERM) or when it has no bus.
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "bus/advice_receiver.h"
+#include "bus/lcm_url.h"
+#include "bus/process.h"
+#include "verifier/verifier_node.h"
+
+namespace {
+
+// Datagrams read from the advice bus in one turn; the receiver hands on far
+// fewer (20 a second of one sender).
+constexpr std::size_t kDatagramsPerTurn = 64;
+
+std::int64_t Microseconds(terra::bus::Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             time.time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  terra::verifier::GateOptions gate;
+  std::optional<terra::bus::AdviceReceiver> receiver;
+  terra::bus::ProcessSpec spec;
+  spec.program = "terra-verifier";
+  spec.name = "verifier";
+  spec.description =
+      "The gate: deploys the baseline at once, and an advisor's route only "
+      "when it is feasible and strictly cheaper.\nexample: terra-verifier "
+      "--margin 0.5";
+  spec.add_options = [&](CLI::App& app) {
+    app.add_option("--margin", gate.margin,
+                   "a candidate must save more than this, in cost")
+        ->check(CLI::Range(0.0, 1e9));
+  };
+  spec.make_node = [&](terra::bus::ProcessContext& context)
+      -> terra::Result<std::unique_ptr<terra::bus::Node>> {
+    auto node =
+        std::make_unique<terra::verifier::VerifierNode>(gate, context.out);
+    const auto advice = terra::bus::ParseLcmUrl(context.bus.advice_url);
+    if (!advice) return advice.error();
+    if (!advice->is_udpm() || context.bus.advice_url == context.bus.lcm_url) {
+      node->ListenToAdvice();
+      return std::unique_ptr<terra::bus::Node>(std::move(node));
+    }
+    auto opened = terra::bus::AdviceReceiver::Open(
+        context.bus.advice_url,
+        context.channels.name(terra::bus::Channel::kAdvice));
+    if (!opened) return opened.error();
+    receiver.emplace(*std::move(opened));
+    node->Count(*receiver);
+    terra::verifier::VerifierNode* gate_node = node.get();
+    context.loop.Watch(receiver->fd(), [&, gate_node](terra::bus::Time now) {
+      receiver->Drain(Microseconds(now), kDatagramsPerTurn,
+                      [gate_node, now](const terra::bus::LcmDatagram& datagram,
+                                       terra::bus::SenderAddress) {
+                        gate_node->OnAdviceBytes(datagram.payload, now);
+                      });
+    });
+    return std::unique_ptr<terra::bus::Node>(std::move(node));
+  };
+  return terra::bus::RunProcess(spec, argc, argv);
+}

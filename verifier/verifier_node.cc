@@ -1,0 +1,251 @@
+#include "verifier/verifier_node.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "bus/codec.h"
+#include "terrain/segment.h"
+
+namespace terra::verifier {
+namespace {
+
+using terra_msg::advice_t;
+using terra_msg::baseline_t;
+using terra_msg::deployed_t;
+using terra_msg::verdict_t;
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+double CostOnBus(double cost) {
+  return std::isfinite(cost) ? cost : kNotANumber;
+}
+
+BaselineEvent ToEvent(const baseline_t& message) {
+  BaselineEvent event;
+  event.session = message.session;
+  event.planner = message.planner;
+  event.request_id = message.request_id;
+  event.start = Cell{message.start_x, message.start_y};
+  event.goal = Cell{message.goal_x, message.goal_y};
+  event.map_id = message.map_id;
+  event.cancelled = message.status == baseline_t::STATUS_CANCELLED;
+  event.has_route = message.status == baseline_t::STATUS_OK;
+  event.baseline_digest = message.baseline_digest;
+  event.waypoints = bus::WaypointsOf(message);
+  return event;
+}
+
+AdviceEvent ToEvent(const advice_t& message) {
+  AdviceEvent event;
+  event.session = message.session;
+  event.advisor = message.advisor;
+  event.attempt = message.attempt;
+  event.candidate = message.candidate;
+  event.request_id = message.request_id;
+  event.map_id = message.map_id;
+  event.baseline_digest = message.baseline_digest;
+  event.anchor =
+      Anchor{message.anchor_session, message.anchor_route_seq,
+             message.anchor_index, Cell{message.anchor_x, message.anchor_y}};
+  const bool known = message.kind >= advice_t::KIND_RETAIN &&
+                     message.kind <= advice_t::KIND_FAILED;
+  event.kind = known ? AdviceKind{message.kind} : AdviceKind::kNone;
+  event.waypoints = bus::WaypointsOf(message);
+  return event;
+}
+
+verdict_t ToMessage(const Verdict& verdict, std::int64_t t_det_us) {
+  verdict_t message{};
+  message.decision = verdict.decision;
+  message.subject = static_cast<std::int8_t>(verdict.subject);
+  message.request_id = verdict.request_id;
+  message.map_id = verdict.map_id;
+  message.baseline_digest = verdict.baseline_digest;
+  message.anchor_session = verdict.anchor.session;
+  message.anchor_route_seq = verdict.anchor.route_seq;
+  message.anchor_index = verdict.anchor.index;
+  message.anchor_x = verdict.anchor.cell.x;
+  message.anchor_y = verdict.anchor.cell.y;
+  message.advisor = verdict.advisor;
+  message.advisor_session = verdict.advisor_session;
+  message.attempt = verdict.attempt;
+  message.candidate = verdict.candidate;
+  message.code = static_cast<std::int16_t>(verdict.code);
+  message.candidate_cost = CostOnBus(verdict.candidate_cost);
+  message.baseline_cost = CostOnBus(verdict.baseline_cost);
+  message.cost_to_beat = CostOnBus(verdict.cost_to_beat);
+  message.route_seq_before = verdict.route_seq_before;
+  message.fail_segment = verdict.fail_segment;
+  message.fail_x = verdict.fail_cell.x;
+  message.fail_y = verdict.fail_cell.y;
+  message.t_det_us = t_det_us;
+  return message;
+}
+
+deployed_t ToMessage(const Deployed& deployed) {
+  deployed_t message{};
+  message.decision = deployed.decision;
+  message.route_seq = deployed.route_seq;
+  message.request_id = deployed.request_id;
+  message.start_x = deployed.start.x;
+  message.start_y = deployed.start.y;
+  message.goal_x = deployed.goal.x;
+  message.goal_y = deployed.goal.y;
+  message.map_id = deployed.map_id;
+  message.baseline_digest = deployed.baseline_digest;
+  message.mode = static_cast<std::int8_t>(deployed.mode);
+  message.cause = static_cast<std::int8_t>(deployed.cause);
+  message.source = deployed.source;
+  message.source_session = deployed.source_session;
+  message.source_attempt = deployed.source_attempt;
+  message.source_candidate = deployed.source_candidate;
+  bus::SetWaypoints(message, deployed.waypoints);
+  if (deployed.has_route()) {
+    const bus::Chain chain =
+        bus::EncodeChain(RasterizeRoute(deployed.waypoints));
+    message.num_steps = chain.num_steps;
+    message.num_chain_bytes = static_cast<std::int32_t>(chain.bytes.size());
+    message.chain = chain.bytes;
+  }
+  message.deployed_cost = CostOnBus(deployed.cost);
+  message.baseline_cost = CostOnBus(deployed.baseline_cost);
+  return message;
+}
+
+}  // namespace
+
+VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
+    : gate_(options), out_(out), map_(out) {
+  Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
+    if (map_.OnHeader(message, now)) OnMap(now);
+  });
+  Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
+    if (map_.OnTiles(message, now)) OnMap(now);
+  });
+  Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
+    const bool cancel =
+        message.action == terra_msg::plan_request_t::ACTION_CANCEL;
+    if (!cancel && message.action != terra_msg::plan_request_t::ACTION_GO) {
+      return;
+    }
+    Decide(RequestEvent{message.request_id, cancel,
+                        Cell{message.start_x, message.start_y},
+                        Cell{message.goal_x, message.goal_y}},
+           now);
+  });
+  Listen<baseline_t>([this](const auto& message, bus::Time now) {
+    OnBaseline(message, now);
+  });
+}
+
+void VerifierNode::ListenToAdvice() {
+  Listen<advice_t>([this](const auto& message, bus::Time now) {
+    Decide(ToEvent(message), now);
+  });
+}
+
+void VerifierNode::OnAdviceBytes(std::span<const std::uint8_t> bytes,
+                                 bus::Time now) {
+  const Result<advice_t> message = bus::Decode<advice_t>(bytes);
+  if (message) {
+    Decide(ToEvent(*message), now);
+  } else {
+    ++malformed_advice_;
+    last_error_ = "advice: " + message.error().message;
+  }
+}
+
+void VerifierNode::OnMap(bus::Time now) {
+  const bus::MapPtr held = map_.map();
+  Decide(MapEvent{std::shared_ptr<const TerrainMap>(held, &held->map),
+                  held->map_id},
+         now);
+}
+
+void VerifierNode::OnBaseline(const baseline_t& message, bus::Time now) {
+  if (planner_.Accept(message.session, message.seq)) {
+    Decide(ToEvent(message), now);
+  }
+}
+
+template <typename Event>
+void VerifierNode::Decide(const Event& event, bus::Time now) {
+  const auto begin = bus::Clock::now();
+  const Decisions decisions = gate_.On(event);
+  const auto t_det = std::chrono::duration_cast<std::chrono::microseconds>(
+      bus::Clock::now() - begin);
+  for (const Decision& decision : decisions) {
+    if (const auto* verdict = std::get_if<Verdict>(&decision)) {
+      Send(*verdict, t_det.count());
+    } else {
+      Send(std::get<Deployed>(decision), now);
+    }
+  }
+}
+
+void VerifierNode::Send(const Verdict& verdict, std::int64_t t_det_us) {
+  verdict_t message = ToMessage(verdict, t_det_us);
+  out_.Send(message);
+}
+
+void VerifierNode::Send(const Deployed& deployed, bus::Time now) {
+  deployed_message_ = ToMessage(deployed);
+  out_.Send(deployed_message_);
+  repeat_.Postpone(now);
+}
+
+bus::Time VerifierNode::Advance(bus::Time now) {
+  const bus::Time ask = map_.Advance(now);
+  if (gate_.deployed().request_id == 0) return ask;
+  if (repeat_.Due(now)) out_.Send(deployed_message_);
+  return std::min(ask, repeat_.next());
+}
+
+std::string VerifierNode::state() const {
+  if (!gate_.has_map()) return map_.state();
+  switch (gate_.deployed().mode) {
+    case Mode::kNone:
+      return "ready, nothing deployed";
+    case Mode::kBaseline:
+      return "ready, baseline deployed";
+    case Mode::kCandidate:
+      return "ready, candidate deployed";
+    case Mode::kHold:
+      return "on hold: no valid route";
+  }
+  return "ready";
+}
+
+std::string VerifierNode::last_error() const {
+  return last_error_.empty() ? map_.last_error() : last_error_;
+}
+
+void VerifierNode::AddCounters(bus::Counters& counters) const {
+  Node::AddCounters(counters);
+  const GateCounters& gate = gate_.counters();
+  counters.emplace_back("judged", gate.judged);
+  counters.emplace_back("accepted", gate.accepted);
+  counters.emplace_back("repeats", gate.repeats);
+  counters.emplace_back("unknown_key", gate.unknown_key);
+  counters.emplace_back("failed_advice", gate.failed_advice);
+  counters.emplace_back("invalid_baselines", gate.invalid_baselines);
+  counters.emplace_back("other_baselines", gate.other_baselines);
+  counters.emplace_back("malformed_advice", malformed_advice_);
+  counters.emplace_back("lost", map_.sender().lost() + planner_.lost());
+  counters.emplace_back("from_replaced_planner", planner_.from_replaced());
+  if (receiver_ != nullptr) {
+    const bus::AdviceReceiver::Counters& bus = receiver_->counters();
+    const auto add = [&counters](const char* name, std::uint64_t value) {
+      counters.emplace_back(name, static_cast<std::int64_t>(value));
+    };
+    add("advice_received", bus.received);
+    add("advice_malformed", bus.malformed);
+    add("advice_over_limit", bus.over_limit);
+    add("advice_lost_in_kernel", bus.lost_in_kernel);
+  }
+}
+
+}  // namespace terra::verifier

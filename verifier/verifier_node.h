@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bus/advice_receiver.h"
+#include "bus/map_receiver.h"
+#include "bus/node.h"
+#include "verifier/gate.h"
+
+namespace terra::verifier {
+
+/// The gate on the bus: listens to map, PLAN_REQUEST, BASELINE and, on the
+/// advice bus, ADVICE; publishes DEPLOYED at once on every change and then 5
+/// times a second, and a VERDICT for each judged advice or invalid baseline.
+///
+/// All decisions are Gate's; this class converts messages and keeps time. The
+/// deployed bus is handed over before advice in every turn (bus/event_loop.h).
+class VerifierNode : public bus::Node {
+ public:
+  VerifierNode(GateOptions options, bus::Outbox& out);
+
+  /// Takes ADVICE from the deployed bus too: for a bus that has no second port
+  /// (memq://, file://) and for log replay.
+  void ListenToAdvice();
+
+  /// Takes the bytes of one ADVICE message off the advice bus.
+  void OnAdviceBytes(std::span<const std::uint8_t> bytes, bus::Time now);
+
+  /// For the heartbeat; the receiver must outlive the node.
+  void Count(const bus::AdviceReceiver& receiver) { receiver_ = &receiver; }
+
+  bus::Time Advance(bus::Time now) override;
+  std::string state() const override;
+  std::string last_error() const override;
+  void AddCounters(bus::Counters& counters) const override;
+
+ private:
+  void OnMap(bus::Time now);
+  void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
+
+  /// Lets the gate decide, publishes what came of it.
+  template <typename Event>
+  void Decide(const Event& event, bus::Time now);
+  void Send(const Verdict& verdict, std::int64_t t_det_us);
+  void Send(const Deployed& deployed, bus::Time now);
+
+  Gate gate_;
+  bus::Outbox& out_;
+  bus::MapReceiver map_;
+  bus::SenderTracker planner_;
+  bus::Periodic repeat_{bus::kStatePeriod};
+  terra_msg::deployed_t deployed_message_{};
+  const bus::AdviceReceiver* receiver_ = nullptr;
+  std::int64_t malformed_advice_ = 0;
+  std::string last_error_;
+};
+
+}  // namespace terra::verifier

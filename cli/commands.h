@@ -18,6 +18,7 @@ void AddVerifyCommand(CLI::App& app, int& exit_code);
 void AddAdviseCommand(CLI::App& app, int& exit_code);
 void AddRenderCommand(CLI::App& app, int& exit_code);
 void AddRequestCommand(CLI::App& app, int& exit_code);
+void AddLogCommand(CLI::App& app, int& exit_code);
 void AddBenchCommand(CLI::App& app, int& exit_code);
 
 }  // namespace terra::cli

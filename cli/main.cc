@@ -19,6 +19,7 @@ void AddCommands(CLI::App& app, int& exit_code) {
   AddAdviseCommand(app, exit_code);
   AddRenderCommand(app, exit_code);
   AddRequestCommand(app, exit_code);
+  AddLogCommand(app, exit_code);
   AddBenchCommand(app, exit_code);
 }
 

@@ -14,7 +14,16 @@ void AppendBigEndian(std::vector<std::uint8_t>& bytes, std::uint64_t value,
   }
 }
 
+bool IsVisible(char c) {
+  return c > 0x20 && c < 0x7f;
+}
+
 }  // namespace
+
+bool IsLogChannel(std::string_view name) {
+  return !name.empty() && name.size() <= kMaxLogChannel &&
+         std::all_of(name.begin(), name.end(), IsVisible);
+}
 
 std::uint32_t ReadBigEndian32(const std::uint8_t* from) {
   return (std::uint32_t{from[0]} << 24) | (std::uint32_t{from[1]} << 16) |
@@ -27,8 +36,7 @@ std::int64_t ReadBigEndian64(const std::uint8_t* from) {
 }
 
 void AppendLogEvent(std::vector<std::uint8_t>& bytes, const LogEvent& event) {
-  TERRA_REQUIRE(!event.channel.empty() &&
-                event.channel.size() <= kMaxLogChannel &&
+  TERRA_REQUIRE(IsLogChannel(event.channel) &&
                 event.data.size() <= kMaxLogData);
   AppendBigEndian(bytes, kLogMagic, 4);
   AppendBigEndian(bytes, static_cast<std::uint64_t>(event.number), 8);
@@ -54,9 +62,7 @@ ParsedLogEvent ParseLogEvent(std::span<const std::uint8_t> bytes) {
   const auto rest = bytes.subspan(kLogHeaderBytes);
   const auto channel =
       rest.first(std::min<std::size_t>(rest.size(), channel_size));
-  if (!std::all_of(channel.begin(), channel.end(), [](std::uint8_t c) {
-        return c > 0x20 && c < 0x7f;
-      })) {
+  if (!std::all_of(channel.begin(), channel.end(), IsVisible)) {
     return parsed;
   }
   parsed.valid = true;

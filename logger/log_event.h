@@ -24,11 +24,15 @@ inline constexpr std::size_t kLogHeaderBytes = 28;
 inline constexpr std::size_t kMaxLogChannel = 255;
 inline constexpr std::size_t kMaxLogData = std::size_t{1} << 24;
 
+/// Returns whether a channel can stand in our logs: 1 to kMaxLogChannel visible
+/// ASCII characters, which tells a header from damage.
+bool IsLogChannel(std::string_view name);
+
 std::uint32_t ReadBigEndian32(const std::uint8_t* from);
 std::int64_t ReadBigEndian64(const std::uint8_t* from);
 
 /// Appends the bytes of an event.
-/// Pre: channel of 1 to kMaxLogChannel bytes, at most kMaxLogData of data.
+/// Pre: IsLogChannel(channel), at most kMaxLogData of data.
 void AppendLogEvent(std::vector<std::uint8_t>& bytes, const LogEvent& event);
 
 /// What is found at the beginning of some bytes of a log.

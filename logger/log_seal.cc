@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bus/messages.h"
+#include "logger/log_channels.h"
 #include "terrain/require.h"
 
 namespace terra::logger {
@@ -72,12 +73,6 @@ void AppendMark(std::vector<std::uint8_t>& bytes, LogEvent place,
   AppendLogEvent(bytes, place);
 }
 
-bool IsMarkChannel(std::string_view channel) {
-  const std::string_view name = bus::BaseName(bus::Channel::kLog);
-  return channel == name || (channel.ends_with(name) &&
-                             channel[channel.size() - name.size() - 1] == '_');
-}
-
 std::optional<terra_msg::log_mark_t> SealChecker::Take(
     const LogReader::Item& item) {
   closed_ = false;
@@ -92,7 +87,8 @@ std::optional<terra_msg::log_mark_t> SealChecker::Take(
                      ? item.event.number + 1
                      : 0;
   Result<terra_msg::log_mark_t> mark = Error{};
-  if (IsMarkChannel(item.event.channel)) {
+  if (ChannelOf(item.event.channel) == bus::Channel::kLog) {
+    sealed_ = true;
     mark = bus::Decode<terra_msg::log_mark_t>(item.event.data);
     if (!mark) {
       Break(begin, std::ssize(item.raw), "a mark that cannot be read");

@@ -50,9 +50,6 @@ class RunningChecksum {
 void AppendMark(std::vector<std::uint8_t>& bytes, LogEvent place,
                 terra_msg::log_mark_t mark, RunningChecksum& covered);
 
-/// Returns whether a channel name is that of marks, under any robot's prefix.
-bool IsMarkChannel(std::string_view channel);
-
 /// Follows the events of a log, in order, and says where its bytes are not what
 /// was written. Any marks are safe.
 class SealChecker {
@@ -72,7 +69,7 @@ class SealChecker {
   void Finish(std::int64_t file_size);
 
   /// Marks were found: this is one of our logs.
-  bool sealed() const { return good_ + num_broken_ > 0; }
+  bool sealed() const { return sealed_; }
   std::int64_t good() const { return good_; }
   /// The first kMaxBroken; all are counted.
   const std::vector<Broken>& broken() const { return broken_; }
@@ -96,6 +93,7 @@ class SealChecker {
   std::int64_t covered_events_ = 0;
   std::int64_t next_number_ = 0;
   std::int64_t end_ = 0;
+  bool sealed_ = false;
   std::int64_t good_ = 0;
   std::int64_t num_broken_ = 0;
   std::vector<Broken> broken_;

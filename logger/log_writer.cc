@@ -134,4 +134,9 @@ Status LogWriter::Sync() {
   return Done{};
 }
 
+void LogWriter::Discard() {
+  close(std::exchange(fd_, -1));
+  unlink(part_.path.c_str());
+}
+
 }  // namespace terra::logger

@@ -50,7 +50,10 @@ class LogWriter {
   /// Errors: kUnavailable with the system's reason; to be tried again.
   Status Sync();
 
-  /// Events since the last mark.
+  /// Closes the file and deletes it.
+  void Discard();
+
+  /// No event came since the last mark.
   bool sealed() const { return events_since_mark_ == 0; }
   std::int64_t synced_bytes() const { return synced_bytes_; }
   std::int64_t pending_bytes() const { return std::ssize(pending_); }

@@ -86,9 +86,10 @@ TEST(LogReader, ALengthThatSwallowsTheNextEventCostsOneEventOnly) {
 
 TEST(LogReader, HugeAndNegativeLengthsCostOneEventOnly) {
   for (const int at : {20, 24}) {
-    for (const std::uint8_t high : {0x7f, 0xff, 0x80, 0x01}) {
+    for (const int high : {0x7f, 0xff, 0x80, 0x01}) {
       Bytes bytes = SmallLog(4);
-      bytes[EventSize(0) + static_cast<std::size_t>(at)] = high;
+      bytes[EventSize(0) + static_cast<std::size_t>(at)] =
+          static_cast<std::uint8_t>(high);
       LogReader reader(bytes);
       EXPECT_EQ(ChannelsIn(reader), "ACD");
       EXPECT_EQ(reader.num_damaged_bytes(),

@@ -147,10 +147,10 @@ TEST(LogSeal, ALogOfAnotherRecorderHasNoSealsAndNoFault) {
 }
 
 TEST(LogSeal, OnlyTheRobotsOwnMarksAreMarks) {
-  EXPECT_TRUE(IsMarkChannel("TERRA_LOG"));
-  EXPECT_TRUE(IsMarkChannel("R1_TERRA_LOG"));
-  EXPECT_FALSE(IsMarkChannel("XTERRA_LOG"));
-  EXPECT_FALSE(IsMarkChannel("TERRA_LOGS"));
+  EXPECT_EQ(ChannelOf("TERRA_LOG"), bus::Channel::kLog);
+  EXPECT_EQ(ChannelOf("R1_TERRA_LOG"), bus::Channel::kLog);
+  EXPECT_FALSE(ChannelOf("XTERRA_LOG"));
+  EXPECT_FALSE(ChannelOf("TERRA_LOGS"));
 }
 
 }  // namespace

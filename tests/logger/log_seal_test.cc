@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "logger/log_channels.h"
 #include "logger/log_writer.h"
 
 namespace terra::logger {

@@ -171,7 +171,7 @@ std::int64_t LogReader::FindEvent(std::int64_t from) {
 
 std::int64_t LogReader::FindMagic(std::int64_t from) {
   while (from < size_) {
-    const auto bytes = View(from, kWindowBytes);
+    const auto bytes = View(from, kMagicBytes.size());
     const auto found = std::search(bytes.begin(), bytes.end(),
                                    kMagicBytes.begin(), kMagicBytes.end());
     if (found != bytes.end()) {

@@ -210,6 +210,8 @@ bus::Time AdvisorNode::Advance(bus::Time now) {
 
 std::string AdvisorNode::state() const {
   if (!map_.map()) return map_.state();
+  const std::string special = worker_.backend().figures().state;
+  if (!special.empty()) return special;
   return worker_.busy() ? "working" : "ready";
 }
 
@@ -222,6 +224,10 @@ void AdvisorNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("jobs", jobs_);
   counters.emplace_back("answers", answers_);
   counters.emplace_back("failures", failures_);
+  counters.emplace_back("queue", worker_.busy() ? 1 : 0);
+  for (auto& counter : worker_.backend().figures().counters) {
+    counters.push_back(std::move(counter));
+  }
   counters.emplace_back("from_replaced_planner", planner_.from_replaced());
 }
 

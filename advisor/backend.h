@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "advisor/answer_kind.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
 
@@ -20,15 +22,6 @@ struct AdviceTask {
   Route baseline;  ///< Feasible on the map; from start to goal.
   double baseline_cost = 0;
 };
-
-/// Numbers are those of advice_t.
-enum class AnswerKind : std::int8_t {
-  kRetain = 1,
-  kPropose = 2,
-  kMalformed = 3,
-  kFailed = 4,
-};
-enum class AnswerForm : std::int8_t { kNone = 0, kExact = 1, kTolerated = 2 };
 
 /// One candidate of an answer.
 struct Candidate {
@@ -52,15 +45,24 @@ struct AdviceAnswer {
   std::int64_t t_llm_us = 0;
 };
 
+/// What a backend tells of itself in its process's heartbeat.
+struct BackendFigures {
+  std::string state;       ///< Empty = nothing out of the ordinary.
+  std::string last_error;  ///< Of the last task without an answer; or empty.
+  std::vector<std::pair<std::string, std::int64_t>> counters;
+};
+
 /// A way of finding better routes. May take long and may fail.
 /// Threads: Advise is called from one worker thread; it returns early, with any
-///          answer, when `stop` is requested.
+///          answer, when `stop` is requested. figures may be called from
+///          another thread at any time, the names always.
 class Backend {
  public:
   virtual ~Backend() = default;
   virtual std::string name() const = 0;    ///< "search", "openai", ...
   virtual std::string method() const = 0;  ///< "refiner", "advisor", ...
   virtual AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) = 0;
+  virtual BackendFigures figures() const { return {}; }
 };
 
 }  // namespace terra::advisor

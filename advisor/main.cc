@@ -3,17 +3,14 @@
 // and CONFIG on the deployed one; exits when asked to (SIGINT, SIGTERM) or when
 // it has no bus.
 #include <memory>
-#include <string>
-
-#include <CLI/CLI.hpp>
 
 #include "advisor/advisor_node.h"
-#include "advisor/refiner_backend.h"
+#include "advisor/advisor_options.h"
 #include "bus/bus.h"
 #include "bus/process.h"
 
 int main(int argc, char** argv) {
-  std::string backend = "search";
+  terra::advisor::AdvisorOptions options;
   std::unique_ptr<terra::bus::Bus> advice_bus;
   std::unique_ptr<terra::bus::Outbox> advice_out;
   terra::bus::ProcessSpec spec;
@@ -24,11 +21,12 @@ int main(int argc, char** argv) {
       "under different names.\nexample: terra-advisor --name search --backend "
       "search";
   spec.add_options = [&](CLI::App& app) {
-    app.add_option("--backend", backend, "how routes are found")
-        ->check(CLI::IsMember(terra::advisor::RefinerBackendNames()));
+    terra::advisor::AddAdvisorOptions(app, options);
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
+    auto backend = terra::advisor::MakeBackend(options);
+    if (!backend) return backend.error();
     auto opened =
         terra::bus::Bus::Open(context.bus.advice_url, context.channels);
     if (!opened) return opened.error();
@@ -38,8 +36,8 @@ int main(int argc, char** argv) {
     terra::bus::Inbox& inbox = context.inbox;
     return std::unique_ptr<terra::bus::Node>(
         std::make_unique<terra::advisor::AdvisorNode>(
-            context.name, terra::advisor::MakeRefinerBackend(backend),
-            context.out, *advice_out, [&inbox] {
+            context.name, *std::move(backend), context.out, *advice_out,
+            [&inbox] {
               inbox.Wake();
             }));
   };

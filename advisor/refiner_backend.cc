@@ -17,6 +17,15 @@ struct NamedRefiner {
 constexpr NamedRefiner kRefiners[] = {
     {"search", RefineBySearch},
     {"shortcut", RefineByShortcut},
+    {"band",
+     [](const RefineInput& input) {
+       return RefineByBand(input);
+     }},
+    {"campana",
+     [](const RefineInput& input) {
+       return RefineByCampana(input, CampanaForm::kKeepBest);
+     }},
+    {"app", RefineByAppStyle},
 };
 
 class RefinerBackend : public Backend {
@@ -26,9 +35,9 @@ class RefinerBackend : public Backend {
   std::string name() const override { return std::string(refiner_.name); }
   std::string method() const override { return "refiner"; }
 
-  AdviceAnswer Advise(const AdviceTask& task, std::stop_token) override {
+  AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) override {
     RefineOutput output = refiner_.refine(
-        RefineInput{task.map, task.baseline, task.baseline_cost});
+        RefineInput{task.map, task.baseline, task.baseline_cost, stop});
     AdviceAnswer answer;
     answer.form = AnswerForm::kExact;
     if (output.cost < task.baseline_cost) {

@@ -1,16 +1,16 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "advisor/refiner_backend.h"
+#include "advisor/advisor_options.h"
+#include "cli/baseline.h"
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
-#include "planner/coarse_lattice.h"
+#include "terrain/digest.h"
 #include "terrain/files/csv.h"
 #include "terrain/route_text.h"
 #include "verifier/verify.h"
@@ -24,9 +24,8 @@ using verifier::Code;
 
 struct AdviseArguments {
   ProblemArguments problem;
-  std::string backend = "search";
-  planner::LatticeOptions lattice;
-  std::optional<Route> baseline;  // Instead of the lattice's.
+  advisor::AdvisorOptions advisor;
+  BaselineArguments baseline;
   bool json = false;
 };
 
@@ -39,19 +38,6 @@ struct Advised {
   double candidate_cost = kImpassable;
   double seconds = 0;  // Of the advisor alone.
 };
-
-Result<Route> BaselineFor(const AdviseArguments& arguments,
-                          const TerrainMap& map) {
-  const ProblemArguments& problem = arguments.problem;
-  if (arguments.baseline) return *arguments.baseline;
-  planner::LatticePlan plan = planner::PlanOnLattice(
-      map, problem.start, problem.goal, arguments.lattice);
-  if (plan.found()) return std::move(plan.waypoints);
-  return Error{ErrorCode::kNotFound,
-               "there is no baseline on the lattice of stride " +
-                   std::to_string(arguments.lattice.stride) +
-                   "; try a smaller --stride, or give a --baseline"};
-}
 
 // The cheapest candidate that the gate would accept, else the first one.
 void JudgeCandidates(const AdviceAnswer& answer, const TerrainMap& map,
@@ -72,23 +58,18 @@ Result<Advised> Advise(const AdviseArguments& arguments,
                        const TerrainMap& map) {
   const ProblemArguments& problem = arguments.problem;
   Advised advised;
-  Result<Route> baseline = BaselineFor(arguments, map);
+  Result<Baseline> baseline = FindBaseline(map, problem, arguments.baseline);
   if (!baseline.ok()) return baseline.error();
-  advised.baseline = *std::move(baseline);
-  const verifier::RouteCheck check =
-      verifier::CheckRoute(map, advised.baseline, problem.start, problem.goal);
-  if (!check.feasible()) {
-    return Error{ErrorCode::kInvalid,
-                 "the baseline is not feasible: " +
-                     std::string(verifier::CodeName(check.code))};
-  }
-  advised.baseline_cost = check.cost;
+  advised.baseline = std::move(baseline->route);
+  advised.baseline_cost = baseline->cost;
 
-  const auto backend = advisor::MakeRefinerBackend(arguments.backend);
+  const auto backend = advisor::MakeBackend(arguments.advisor);
+  if (!backend) return backend.error();
   const auto begin = std::chrono::steady_clock::now();
-  const AdviceAnswer answer = backend->Advise(
-      {map, 0, 0, problem.start, problem.goal, advised.baseline, check.cost},
-      {});
+  const AdviceAnswer answer =
+      (*backend)->Advise({map, MapId(map), 0, problem.start, problem.goal,
+                          advised.baseline, advised.baseline_cost},
+                         {});
   advised.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
           .count();
@@ -160,16 +141,9 @@ void AddAdviseCommand(CLI::App& app, int& exit_code) {
       "advise", "Run one advisor on one case, without the bus");
   const auto arguments = std::make_shared<AdviseArguments>();
   AddProblemOptions(command, arguments->problem);
-  command
-      .add_option("--backend", arguments->backend,
-                  "Which advisor (default search)")
-      ->check(CLI::IsMember(advisor::RefinerBackendNames()))
-      ->type_name("B");
-  AddStrideOption(command, arguments->lattice.stride);
-  AddRouteOption(command, "--baseline", arguments->baseline,
-                 "Baseline to improve (default: the lattice's)")
-      ->required(false);
+  AddBaselineOptions(command, arguments->baseline);
   command.add_flag("--json", arguments->json, "Print JSON");
+  advisor::AddAdvisorOptions(command, arguments->advisor);
   command.footer(
       "Example:\n"
       "  terra advise --map park.png --start 20,20 --goal 480,460 --backend "

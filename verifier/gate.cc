@@ -168,6 +168,7 @@ void Gate::Deploy(Deployed next, Decisions& out) {
   next.goal = request_.goal;
   next.map_id = map_id_;
   deployed_ = std::move(next);
+  driven_.Follow(deployed_.waypoints);
   out.emplace_back(deployed_);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "terrain/map.h"
+#include "verifier/driven_route.h"
 #include "verifier/gate_memory.h"
 #include "verifier/gate_messages.h"
 #include "verifier/verify.h"
@@ -14,6 +15,9 @@ namespace terra::verifier {
 struct GateOptions {
   /// A candidate must beat the deployed route by more than this, in cost.
   double margin = 0;
+  /// The session that DEPLOYED is sent under. Anchors and poses name it; with 0
+  /// only advice from the start on can be accepted.
+  std::int64_t session = 0;
 };
 
 /// What the gate counted; monotone within a session.
@@ -25,6 +29,7 @@ struct GateCounters {
   std::int64_t failed_advice = 0;  ///< Advisors that had no answer.
   std::int64_t invalid_baselines = 0;
   std::int64_t other_baselines = 0;  ///< For another request or map.
+  std::int64_t other_poses = 0;      ///< On a route that is not in force.
 };
 
 /// Decides what is deployed: a state machine over events, without clock, I/O or
@@ -40,6 +45,7 @@ class Gate {
   Decisions On(const RequestEvent& event);
   Decisions On(const BaselineEvent& event);
   Decisions On(const AdviceEvent& event);
+  Decisions On(const PoseEvent& event);  ///< Never decides anything by itself.
 
   /// What is in force, to be repeated while it is; request_id 0 = nothing yet.
   const Deployed& deployed() const { return deployed_; }
@@ -58,6 +64,11 @@ class Gate {
   struct HeldBaseline {
     BaselineEvent message;
     RouteCheck check;
+  };
+
+  struct PricedRoute {
+    Route waypoints;
+    double cost = kImpassable;
   };
 
   void Replace(const Request& request, Decisions& out);
@@ -84,9 +95,14 @@ class Gate {
   // The verdict's code so far: kNotChecked = the key matches what is in force;
   // nothing = the gate does not know what the advice speaks of.
   std::optional<Code> CheckKey(const AdviceEvent& event) const;
-  void Judge(const AdviceEvent& event, Verdict& verdict) const;
-  void JudgeProposal(const AdviceEvent& event, Verdict& verdict) const;
-  Deployed Upgrade(const AdviceEvent& event, double cost) const;
+  // Fills in what the verdict says; the whole route when it is accepted.
+  std::optional<PricedRoute> Judge(const AdviceEvent& event,
+                                   Verdict& verdict) const;
+  std::optional<PricedRoute> JudgeProposal(const AdviceEvent& event,
+                                           Verdict& verdict) const;
+  bool AnchorInForce(const Anchor& anchor) const;
+  bool InForce(std::int64_t session, std::int64_t route_seq) const;
+  Deployed Upgrade(const AdviceEvent& event, PricedRoute route) const;
 
   GateOptions options_;
   std::shared_ptr<const TerrainMap> map_;
@@ -96,6 +112,7 @@ class Gate {
   // The planner session that last named the current request.
   std::int64_t answered_by_ = 0;
   Deployed deployed_;
+  DrivenRoute driven_;  // follows deployed_
   std::int64_t decisions_ = 0;
   ReplacedIds replaced_requests_{64};
   ReplacedIds replaced_maps_{64};

@@ -42,17 +42,28 @@ Decisions Gate::On(const AdviceEvent& event) {
   verdict.candidate = event.candidate;
   verdict.code = IsAnswer(event.kind) ? *key : Code::kMalformedMessage;
   verdict.route_seq_before = deployed_.route_seq;
-  if (verdict.code == Code::kNotChecked) {
-    Judge(event, verdict);
-  }
-  const Code code = verdict.code;
-  const double cost = verdict.candidate_cost;
+  std::optional<PricedRoute> accepted;
+  if (verdict.code == Code::kNotChecked) accepted = Judge(event, verdict);
   out.emplace_back(std::move(verdict));
-  if (code == Code::kAccepted) {
+  if (accepted) {
     ++counters_.accepted;
-    Deploy(Upgrade(event, cost), out);
+    Deploy(Upgrade(event, *std::move(accepted)), out);
   }
   return out;
+}
+
+Decisions Gate::On(const PoseEvent& event) {
+  if (InForce(event.session, event.route_seq)) {
+    driven_.OnPose(event.cell);
+  } else {
+    ++counters_.other_poses;
+  }
+  return {};
+}
+
+bool Gate::InForce(std::int64_t session, std::int64_t route_seq) const {
+  return session != 0 && session == options_.session &&
+         route_seq == deployed_.route_seq && deployed_.has_route();
 }
 
 std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
@@ -75,52 +86,69 @@ std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
   return Code::kNotChecked;
 }
 
-void Gate::Judge(const AdviceEvent& event, Verdict& verdict) const {
+std::optional<Gate::PricedRoute> Gate::Judge(const AdviceEvent& event,
+                                             Verdict& verdict) const {
   verdict.baseline_cost = baseline_->check.cost;
-  verdict.cost_to_beat = deployed_.cost;
   if (!baseline_valid()) {
     verdict.code = Code::kBaselineInvalid;
-    return;
-  }
-  // Advice for a robot that moves is not taken yet: fail closed.
-  if (event.anchor.index != 0) {
+  } else if (!AnchorInForce(event.anchor)) {
     verdict.code = Code::kLate;
-    return;
-  }
-  if (event.kind == AdviceKind::kRetain) {
+  } else if (event.kind == AdviceKind::kRetain) {
     verdict.code = Code::kRetained;
   } else if (event.kind == AdviceKind::kMalformed) {
     verdict.code = Code::kParseError;
   } else {
-    JudgeProposal(event, verdict);
+    return JudgeProposal(event, verdict);
   }
+  return std::nullopt;
 }
 
-void Gate::JudgeProposal(const AdviceEvent& event, Verdict& verdict) const {
-  if (event.anchor.cell != request_.start) {
+// The start stays an anchor whichever route is in force, until it is passed.
+bool Gate::AnchorInForce(const Anchor& anchor) const {
+  return (anchor.index == 0 || InForce(anchor.session, anchor.route_seq)) &&
+         !driven_.Passed(anchor.index);
+}
+
+// Candidate and deployed route share their cells up to the anchor, so what
+// follows the anchor is compared; only the baseline may differ before it.
+std::optional<Gate::PricedRoute> Gate::JudgeProposal(const AdviceEvent& event,
+                                                     Verdict& verdict) const {
+  const Cell anchor = driven_.cell(event.anchor.index);
+  verdict.cost_to_beat = driven_.CostFrom(*map_, event.anchor.index);
+  if (event.anchor.cell != anchor) {
     verdict.code = Code::kStartMismatch;
     verdict.fail_cell = event.anchor.cell;
-    return;
+    return std::nullopt;
   }
-  const RouteCheck check = CheckRoute(*map_, event.waypoints, request_.start,
-                                      request_.goal, kBusLimits);
+  const RouteCheck check =
+      CheckRoute(*map_, event.waypoints, anchor, request_.goal, kBusLimits);
   verdict.candidate_cost = check.cost;
   if (!check.feasible()) {
     verdict.code = check.code;
     verdict.fail_segment = check.segment;
     verdict.fail_cell = check.cell;
-  } else if (!StrictlyCheaper(check.cost, baseline_->check.cost)) {
+    return std::nullopt;
+  }
+  PricedRoute whole{driven_.JoinAt(event.anchor.index, event.waypoints), 0};
+  const RouteCheck joined = CheckRoute(*map_, whole.waypoints, request_.start,
+                                       request_.goal, kBusLimits);
+  whole.cost = joined.cost;
+  if (!joined.feasible()) {
+    verdict.code = joined.code;
+  } else if (!StrictlyCheaper(joined.cost, baseline_->check.cost)) {
     verdict.code = Code::kNotCheaper;
-  } else if (!StrictlyCheaper(check.cost, deployed_.cost)) {
+  } else if (!StrictlyCheaper(check.cost, verdict.cost_to_beat)) {
     verdict.code = Code::kNotBest;
-  } else if (!(deployed_.cost - check.cost > options_.margin)) {
+  } else if (!(verdict.cost_to_beat - check.cost > options_.margin)) {
     verdict.code = Code::kBelowMargin;
   } else {
     verdict.code = Code::kAccepted;
+    return whole;
   }
+  return std::nullopt;
 }
 
-Deployed Gate::Upgrade(const AdviceEvent& event, double cost) const {
+Deployed Gate::Upgrade(const AdviceEvent& event, PricedRoute route) const {
   Deployed next;
   next.mode = Mode::kCandidate;
   next.cause = Cause::kUpgrade;
@@ -129,8 +157,8 @@ Deployed Gate::Upgrade(const AdviceEvent& event, double cost) const {
   next.source_session = event.session;
   next.source_attempt = event.attempt;
   next.source_candidate = event.candidate;
-  next.waypoints = event.waypoints;
-  next.cost = cost;
+  next.waypoints = std::move(route.waypoints);
+  next.cost = route.cost;
   next.baseline_cost = baseline_->check.cost;
   return next;
 }

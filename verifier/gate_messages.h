@@ -44,7 +44,9 @@ struct BaselineEvent {
   Route waypoints;
 };
 
-/// Where a proposal starts: an index into the dense cells of a deployed route.
+/// Where a proposal starts: an index into the dense cells of the route that
+/// this route_seq of the gate's session named. Index 0 is the start and needs
+/// neither.
 struct Anchor {
   std::int64_t session = 0;
   std::int64_t route_seq = 0;
@@ -75,6 +77,14 @@ struct AdviceEvent {
   Anchor anchor;
   AdviceKind kind = AdviceKind::kNone;
   Route waypoints;
+};
+
+/// POSE.
+struct PoseEvent {
+  Cell cell;
+  /// The DEPLOYED that the robot follows.
+  std::int64_t session = 0;
+  std::int64_t route_seq = 0;
 };
 
 // ---- Decisions: what the shell publishes. ----
@@ -139,9 +149,9 @@ struct Verdict {
   std::int64_t attempt = 0;
   std::int32_t candidate = 0;
   Code code = Code::kNotChecked;
-  double candidate_cost = kImpassable;
-  double baseline_cost = kImpassable;
-  double cost_to_beat = kImpassable;
+  double candidate_cost = kImpassable;  ///< From the anchor on.
+  double baseline_cost = kImpassable;   ///< Of the whole baseline.
+  double cost_to_beat = kImpassable;    ///< Deployed, from the anchor on.
   std::int64_t route_seq_before = 0;
   int fail_segment = -1;
   Cell fail_cell;

@@ -115,10 +115,15 @@ deployed_t ToMessage(const Deployed& deployed) {
   return message;
 }
 
+GateOptions WithSession(GateOptions options, std::int64_t session) {
+  options.session = session;
+  return options;
+}
+
 }  // namespace
 
 VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
-    : gate_(options), out_(out), map_(out) {
+    : gate_(WithSession(options, out.session())), out_(out), map_(out) {
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
     if (map_.OnHeader(message, now)) OnMap(now);
   });
@@ -138,6 +143,11 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
   });
   Listen<baseline_t>([this](const auto& message, bus::Time now) {
     OnBaseline(message, now);
+  });
+  Listen<terra_msg::pose_t>([this](const auto& message, bus::Time now) {
+    Decide(PoseEvent{Cell{message.pose_x, message.pose_y},
+                     message.deployed_session, message.deployed_route_seq},
+           now);
   });
 }
 
@@ -233,6 +243,7 @@ void VerifierNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("failed_advice", gate.failed_advice);
   counters.emplace_back("invalid_baselines", gate.invalid_baselines);
   counters.emplace_back("other_baselines", gate.other_baselines);
+  counters.emplace_back("other_poses", gate.other_poses);
   counters.emplace_back("malformed_advice", malformed_advice_);
   counters.emplace_back("lost", map_.sender().lost() + planner_.lost());
   counters.emplace_back("from_replaced_planner", planner_.from_replaced());

@@ -10,14 +10,15 @@
 
 namespace terra::verifier {
 
-/// The gate on the bus: listens to map, PLAN_REQUEST, BASELINE and, on the
-/// advice bus, ADVICE; publishes DEPLOYED at once on every change and then 5
-/// times a second, and a VERDICT for each judged advice or invalid baseline.
+/// The gate on the bus: listens to map, PLAN_REQUEST, BASELINE, POSE and, on
+/// the advice bus, ADVICE; publishes DEPLOYED at once on every change and then
+/// 5 times a second, and a VERDICT for each judged advice or invalid baseline.
 ///
 /// All decisions are Gate's; this class converts messages and keeps time. The
 /// deployed bus is handed over before advice in every turn (bus/event_loop.h).
 class VerifierNode : public bus::Node {
  public:
+  /// The session of the options is the outbox's.
   VerifierNode(GateOptions options, bus::Outbox& out);
 
   /// Takes ADVICE from the deployed bus too: for a bus that has no second port

@@ -193,7 +193,7 @@ TEST(TerraUsage, WrongUsageExitsWithTwoAndPointsToHelp) {
 
 TEST(TerraUsage, EveryCommandHasAnExample) {
   for (const char* command :
-       {"plan", "oracle", "verify", "advise", "render", "request"}) {
+       {"plan", "oracle", "verify", "advise", "render", "request", "monitor"}) {
     const RunResult run = Terra({command, "--help"});
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.output, HasSubstr(std::string("terra ") + command + " "))

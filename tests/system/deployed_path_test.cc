@@ -106,8 +106,8 @@ class DeployedPathTest : public ::testing::Test {
     network_.Inject(request);
   }
 
-  void Advise(const baseline_t& baseline, const Route& route,
-              std::int64_t attempt) {
+  advice_t Proposal(const baseline_t& baseline, const Route& route,
+                    std::int64_t attempt) {
     advice_t advice{};
     advice.session = 77;
     advice.seq = attempt;
@@ -121,7 +121,25 @@ class DeployedPathTest : public ::testing::Test {
     advice.candidate = 1;
     advice.kind = advice_t::KIND_PROPOSE;
     bus::SetWaypoints(advice, route);
-    network_.Inject(advice);
+    return advice;
+  }
+  void Advise(const baseline_t& baseline, const Route& route,
+              std::int64_t attempt) {
+    network_.Inject(Proposal(baseline, route, attempt));
+  }
+
+  // The robot follows what was deployed last.
+  void DriveTo(Cell cell) {
+    const deployed_t deployed = network_.Sent<deployed_t>().back();
+    terra_msg::pose_t pose{};
+    pose.session = 5;
+    pose.seq = ++poses_;
+    pose.pose_x = cell.x;
+    pose.pose_y = cell.y;
+    pose.deployed_session = deployed.session;
+    pose.deployed_route_seq = deployed.route_seq;
+    network_.Inject(pose);
+    network_.Run(milliseconds(50));
   }
 
   template <typename T>
@@ -147,6 +165,7 @@ class DeployedPathTest : public ::testing::Test {
   VirtualNetwork network_{7};
   std::filesystem::path folder_;
   std::int64_t requests_ = 0;
+  std::int64_t poses_ = 0;
 };
 
 // Around the bar, above it.
@@ -195,6 +214,43 @@ TEST_F(DeployedPathTest, AdviceThroughAnObstacleChangesNothing) {
   EXPECT_EQ(verdict.code, verdict_t::CODE_OBSTACLE);
   EXPECT_EQ(verdict.fail_x, 70);
   EXPECT_EQ(verdict.fail_y, 60);
+}
+
+TEST_F(DeployedPathTest, AdviceBehindTheRobotIsLate) {
+  StartAll();
+  Ask(11);
+  ASSERT_TRUE(BaselineDeployed(11));
+  DriveTo({kStart.x + 20, kStart.y});
+  Advise(LastBaseline(), kAround, 1);
+  network_.Run(milliseconds(50));
+  EXPECT_EQ(network_.Sent<verdict_t>().back().code, verdict_t::CODE_LATE);
+  EXPECT_TRUE(Deployed(11, deployed_t::MODE_BASELINE));
+}
+
+TEST_F(DeployedPathTest, AdviceFromAnAnchorAheadOfTheRobotKeepsTheWayThere) {
+  StartAll();
+  Ask(11);
+  ASSERT_TRUE(BaselineDeployed(11));
+  const deployed_t before = network_.Sent<deployed_t>().back();
+  const CellPath cells =
+      bus::DecodeChain(kStart, {before.num_steps, before.chain}).value();
+  DriveTo(cells[10]);
+  advice_t advice =
+      Proposal(LastBaseline(), {cells[20], {69, 29}, {91, 29}, kGoal}, 1);
+  advice.anchor_session = before.session;
+  advice.anchor_route_seq = before.route_seq;
+  advice.anchor_index = 20;
+  advice.anchor_x = cells[20].x;
+  advice.anchor_y = cells[20].y;
+  network_.Inject(advice);
+  network_.Run(milliseconds(50));
+  ASSERT_TRUE(Deployed(11, deployed_t::MODE_CANDIDATE));
+  const deployed_t after = network_.Sent<deployed_t>().back();
+  CellPath expected(cells.begin(), cells.begin() + 20);
+  const CellPath tail = RasterizeRoute(bus::WaypointsOf(advice));
+  expected.insert(expected.end(), tail.begin(), tail.end());
+  EXPECT_EQ(bus::DecodeChain(kStart, {after.num_steps, after.chain}).value(),
+            expected);
 }
 
 TEST_F(DeployedPathTest, AnyOrderOfStartsEndsInService) {

@@ -29,8 +29,8 @@ std::vector<std::string> Robot::BusOptions() const {
 
 ChildProcess& Robot::Start(const std::string& name,
                            const std::vector<std::string>& options) {
-  const bool deployed_path =
-      name == "map" || name == "planner" || name == "verifier";
+  const bool deployed_path = name == "map" || name == "planner" ||
+                             name == "graph-planner" || name == "verifier";
   std::vector<std::string> command = {
       ProgramPath(deployed_path ? "terra-" + name : "terra-advisor")};
   for (const std::string& option : BusOptions()) command.push_back(option);

@@ -91,4 +91,15 @@ OracleCheck OracleCheckRoute(const TerrainMap& map, const Route& route,
   return {Code::kFeasible, cost};
 }
 
+std::vector<Cell> OracleCells(const TerrainMap& map, const Route& route) {
+  std::vector<Cell> cells;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    for (const auto& [x, y] : Cells(map, route[i - 1], route[i])) {
+      const Cell cell{static_cast<int>(x), static_cast<int>(y)};
+      if (cells.empty() || cells.back() != cell) cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
 }  // namespace terra::verifier

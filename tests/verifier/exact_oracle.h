@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "terrain/map.h"
 #include "verifier/verify.h"
@@ -13,6 +14,9 @@ struct ExactCost {
   std::int64_t diagonal = 0;
 
   double value() const;
+  friend ExactCost operator+(const ExactCost& a, const ExactCost& b) {
+    return {a.straight + b.straight, a.diagonal + b.diagonal};
+  }
 };
 
 /// Returns whether a < b - 1e-6, decided in integers.
@@ -28,5 +32,8 @@ struct OracleCheck {
 /// code for segments, costs or checks. Costs must be multiples of 1e-8.
 OracleCheck OracleCheckRoute(const TerrainMap& map, const Route& route,
                              Cell start, Cell goal);
+
+/// The cells of a feasible route, one after the other.
+std::vector<Cell> OracleCells(const TerrainMap& map, const Route& route);
 
 }  // namespace terra::verifier

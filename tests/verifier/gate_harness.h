@@ -13,7 +13,10 @@ namespace terra::verifier {
 /// The request is from (0, 1) to (5, 1) unless a test says otherwise.
 class GateHarness {
  public:
-  explicit GateHarness(GateOptions options = {}) : gate(options) {}
+  static constexpr std::int64_t kSession = 4711;
+
+  explicit GateHarness(double margin = 0)
+      : gate(GateOptions{.margin = margin, .session = kSession}) {}
 
   Decisions Map(TerrainMap map) {
     auto shared = std::make_shared<const TerrainMap>(std::move(map));
@@ -71,6 +74,17 @@ class GateHarness {
     return event;
   }
   Decisions Advise(Route route) { return gate.On(AdviceOf(std::move(route))); }
+
+  /// A new proposal from a cell of the deployed route on.
+  AdviceEvent AdviceFrom(int index, Cell cell, Route route) {
+    AdviceEvent event = AdviceOf(std::move(route));
+    event.anchor = Anchor{kSession, deployed().route_seq, index, cell};
+    return event;
+  }
+  /// The robot, on the deployed route.
+  Decisions Pose(Cell cell) {
+    return gate.On(PoseEvent{cell, kSession, deployed().route_seq});
+  }
 
   const Deployed& deployed() const { return gate.deployed(); }
 

@@ -27,8 +27,8 @@ const Route kBottom = {{0, 1}, {1, 2}, {4, 2}, {5, 1}};
 const Route kCorners = {{0, 1}, {0, 0}, {5, 0}, {5, 1}};
 
 // A gate that has deployed the straight baseline of request 1.
-GateHarness Ready(GateOptions options = {}) {
-  GateHarness h(options);
+GateHarness Ready() {
+  GateHarness h;
   h.Map(Field());
   h.Request(1);
   h.Baseline(kStraight);
@@ -214,7 +214,7 @@ Code CodeForGain(double gain, double margin) {
   Legend legend = Legend::Create({{0, "ground", 1, {0, 0, 0}},
                                   {1, "better", 1 - gain, {1, 1, 1}}})
                       .value();
-  GateHarness h(GateOptions{.margin = margin});
+  GateHarness h(margin);
   h.start = {0, 0};
   h.goal = {1, 1};
   h.Map(TerrainMap::Create(ids, std::move(legend)).value());

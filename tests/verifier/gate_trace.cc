@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "terrain/digest.h"
@@ -78,6 +79,9 @@ class Player {
       case 6:
       case 7:
         return Repeat();
+      case 8:
+      case 9:
+        return Feed(Pose());
       default:
         return Feed(Advice());
     }
@@ -120,14 +124,42 @@ class Player {
     return Cell{Draw(kWidth), Draw(kHeight)};
   }
 
-  // A route for the request in force; now and then a wrong one.
-  Route AnyRoute(int detours) {
-    Route route = {now_.deployed.start};
+  // A route from here to the goal in force; now and then a wrong one.
+  Route AnyRoute(Cell from, int detours) {
+    Route route = {from};
     for (int k = detours; k > 0; --k) route.push_back(AnyCell());
     if (!OneIn(24)) route.push_back(now_.deployed.goal);
     if (OneIn(32)) route.front() = AnyCell();
     if (OneIn(40)) route.insert(route.begin(), 2'046, route.front());
     return route;
+  }
+
+  PoseEvent Pose() {
+    PoseEvent event;
+    event.session = kTraceOptions.session + (OneIn(12) ? 1 : 0);
+    event.route_seq = now_.deployed.route_seq - (OneIn(12) ? 1 : 0);
+    event.cell = now_.cells.empty() || OneIn(8) ? AnyCell() : NextCell();
+    return event;
+  }
+  // The robot is slow, so that anchors ahead of it are left.
+  Cell NextCell() {
+    const std::size_t next = now_.place + static_cast<std::size_t>(Draw(3));
+    return now_.cells[std::min(next, now_.cells.size() - 1)];
+  }
+
+  Anchor AnyAnchor() {
+    Anchor anchor;
+    anchor.cell = now_.deployed.start;
+    if (!now_.cells.empty() && OneIn(2)) {
+      const auto count = static_cast<std::uint32_t>(now_.cells.size());
+      anchor.index = Draw(count);
+      anchor.cell = now_.cells[static_cast<std::size_t>(anchor.index)];
+      anchor.session = kTraceOptions.session + (OneIn(24) ? 1 : 0);
+      anchor.route_seq = now_.deployed.route_seq - (OneIn(24) ? 1 : 0);
+    }
+    if (OneIn(32)) anchor.cell = AnyCell();
+    if (OneIn(32)) anchor.index = Draw(60) - 20;
+    return anchor;
   }
 
   BaselineEvent Baseline() {
@@ -143,7 +175,7 @@ class Player {
                              : now_.map_id;
     event.has_route = !OneIn(10);
     event.cancelled = !event.has_route && OneIn(4);
-    if (event.has_route) event.waypoints = AnyRoute(1 + Draw(2));
+    if (event.has_route) event.waypoints = AnyRoute(event.start, 1 + Draw(2));
     event.baseline_digest =
         BaselineDigest(event.request_id, event.map_id, event.waypoints);
     if (OneIn(20)) ++event.baseline_digest;
@@ -166,9 +198,9 @@ class Player {
       event.baseline_digest = digests_[static_cast<std::size_t>(
           Draw(static_cast<std::uint32_t>(digests_.size())))];
     }
-    event.anchor.cell = OneIn(20) ? AnyCell() : now_.deployed.start;
+    event.anchor = AnyAnchor();
     event.kind = static_cast<AdviceKind>(OneIn(6) ? Draw(7) - 1 : 2);
-    event.waypoints = AnyRoute(Draw(3));
+    event.waypoints = AnyRoute(event.anchor.cell, Draw(3));
     return event;
   }
 
@@ -221,6 +253,48 @@ class Player {
       }
     }
     if (now_.baseline) CheckBaseline();
+    ObserveRobot(event);
+  }
+
+  // On maps this small the window of DrivenRoute is the whole rest of a route
+  // of ordinary length; routes that are longer do not arise.
+  void ObserveRobot(const Event& event) {
+    if (const auto* pose = std::get_if<PoseEvent>(&event)) {
+      if (pose->session == kTraceOptions.session && now_.deployed.has_route() &&
+          pose->route_seq == now_.deployed.route_seq) {
+        ObservePose(pose->cell);
+      }
+      return;
+    }
+    std::vector<Cell> cells;
+    if (now_.deployed.has_route()) {
+      cells = OracleCells(*now_.map, now_.deployed.waypoints);
+    }
+    bool shared = now_.place < cells.size() && now_.place < now_.cells.size();
+    for (std::size_t i = 0; shared && i <= now_.place; ++i) {
+      shared = cells[i] == now_.cells[i];
+    }
+    if (!shared) {
+      now_.place = 0;
+      now_.on_route = true;
+    }
+    now_.cells = std::move(cells);
+  }
+
+  void ObservePose(Cell pose) {
+    double nearest = 1e9;
+    std::size_t found = now_.place;
+    for (std::size_t i = now_.place; i < now_.cells.size(); ++i) {
+      const double dx = double{1} * pose.x - now_.cells[i].x;
+      const double dy = double{1} * pose.y - now_.cells[i].y;
+      if (std::max(std::abs(dx), std::abs(dy)) <= 5 &&
+          std::hypot(dx, dy) <= nearest) {
+        nearest = std::hypot(dx, dy);
+        found = i;
+      }
+    }
+    now_.on_route = nearest < 1e9;
+    now_.place = found;
   }
 
   void CheckBaseline() {
@@ -242,7 +316,7 @@ class Player {
   std::int64_t next_attempt_ = 0;
   std::vector<std::int64_t> digests_;
   std::set<Key> judged_;
-  Gate gate_;
+  Gate gate_{kTraceOptions};
   Observed now_;
   std::vector<Turn> turns_;
 };

@@ -14,7 +14,11 @@
 
 namespace terra::verifier {
 
-using Event = std::variant<MapEvent, RequestEvent, BaselineEvent, AdviceEvent>;
+using Event =
+    std::variant<MapEvent, RequestEvent, BaselineEvent, AdviceEvent, PoseEvent>;
+
+/// The session of the gate that PlayTrace feeds.
+inline constexpr GateOptions kTraceOptions = {.margin = 0, .session = 4711};
 
 Decisions Feed(Gate& gate, const Event& event);
 
@@ -28,6 +32,12 @@ struct Observed {
   /// earlier map; its exact check on this map.
   std::optional<BaselineEvent> baseline;
   OracleCheck baseline_check;
+
+  /// Dense cells of the deployed route; index of the last one the robot was
+  /// seen near; whether it was near any when last seen.
+  std::vector<Cell> cells;
+  std::size_t place = 0;
+  bool on_route = true;
 
   bool cancelled() const { return deployed.cause == Cause::kCancelled; }
   bool baseline_valid() const { return baseline && baseline_check.feasible(); }
@@ -45,8 +55,8 @@ struct Turn {
 };
 
 /// Makes events out of random numbers and feeds them to a gate: maps, requests,
-/// baselines good and bad, advice of every kind with keys in force, replaced
-/// and made up, and repetitions of all of them.
+/// baselines good and bad, poses, advice of every kind with keys and anchors in
+/// force, replaced and made up, and repetitions of all of them.
 std::vector<Turn> PlayTrace(std::span<const std::uint32_t> random);
 
 }  // namespace terra::verifier

@@ -1,0 +1,124 @@
+#include "advisor/descriptions.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "advisor/terrain_regions.h"
+#include "terrain/segment.h"
+
+namespace terra::advisor {
+namespace {
+
+constexpr std::size_t kSampleEvery = 5;
+
+// to_chars, because the C library's printing follows the locale.
+template <typename... Format>
+std::string Number(double value, Format... format) {
+  std::array<char, 64> text{};
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, format...);
+  return std::string(text.data(), end.ptr);
+}
+
+std::string HexColor(Color color) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "#%06X", ToRgb(color));
+  return text.data();
+}
+
+std::string Extent(const TerrainRegion& region) {
+  return ToString(region.low) + " to " + ToString(region.high);
+}
+
+double StepLength(Cell from, Cell to) {
+  return from.x != to.x && from.y != to.y ? std::sqrt(2.0) : 1.0;
+}
+
+}  // namespace
+
+std::string CostText(double cost) {
+  return cost == kImpassable ? "obstacle" : Number(cost);
+}
+
+std::string TotalText(double cost) {
+  return Number(cost, std::chars_format::fixed, 6);
+}
+
+std::string LegendText(const Legend& legend) {
+  std::string text;
+  for (const Terrain& terrain : legend.terrains()) {
+    text += "- " + HexColor(terrain.color) + " " + terrain.name + ": " +
+            (terrain.cost == kImpassable ? "obstacle, must not be entered"
+                                         : "cost " + Number(terrain.cost)) +
+            "\n";
+  }
+  return text;
+}
+
+std::string TerrainText(const TerrainMap& map, bool as_table) {
+  const TerrainRegions regions = FindRegions(map);
+  std::string text =
+      as_table ? "area | cost | cells | extent | a cell inside\n" : "";
+  int number = 0;
+  for (const TerrainRegion& region : regions.large) {
+    const std::string cells = std::to_string(region.cells);
+    if (as_table) {
+      text += std::to_string(++number) + " | " + CostText(region.cost) + " | " +
+              cells + " | " + Extent(region) + " | " + ToString(region.inside) +
+              "\n";
+    } else {
+      text += std::string("- ") +
+              (region.cost == kImpassable ? "Obstacle"
+                                          : "Cost " + Number(region.cost)) +
+              ": about " + Extent(region) + ", " + cells + " cells\n";
+    }
+  }
+  if (regions.small_regions > 0) {
+    text +=
+        "Smaller areas not listed: " + std::to_string(regions.small_regions) +
+        ", together " + std::to_string(regions.small_cells) + " cells.\n";
+  }
+  return text;
+}
+
+std::string BaselineText(const TerrainMap& map, const Route& baseline,
+                         double baseline_cost) {
+  const CellPath cells = RasterizeRoute(baseline);
+  std::string text;
+  const auto add = [&](std::size_t i) {
+    text += "#" + std::to_string(i + 1) + " " + ToString(cells[i]) + " cost " +
+            CostText(map.Cost(cells[i])) + "\n";
+  };
+  for (std::size_t i = 0; i < cells.size(); i += kSampleEvery) {
+    add(i);
+  }
+  if (!cells.empty() && (cells.size() - 1) % kSampleEvery != 0) {
+    add(cells.size() - 1);
+  }
+  return text + "Total cost of the baseline: " + TotalText(baseline_cost) +
+         "\n";
+}
+
+std::string StretchText(const TerrainMap& map, const Route& baseline) {
+  const CellPath cells = RasterizeRoute(baseline);
+  std::string text;
+  for (std::size_t first = 1; first < cells.size();) {
+    const double cost = map.Cost(cells[first]);
+    double length = 0;
+    std::size_t last = first;
+    for (; last < cells.size() && map.Cost(cells[last]) == cost; ++last) {
+      length += StepLength(cells[last - 1], cells[last]);
+    }
+    text += "- " + ToString(cells[first]) + " to " + ToString(cells[last - 1]) +
+            ": length " + Number(length, std::chars_format::fixed, 1) +
+            " at cost " + CostText(cost) + " = " +
+            Number(length * cost, std::chars_format::fixed, 1) + "\n";
+    first = last;
+  }
+  return text;
+}
+
+}  // namespace terra::advisor

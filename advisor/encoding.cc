@@ -1,0 +1,84 @@
+#include "advisor/encoding.h"
+
+#include <zstd.h>
+
+#include <array>
+
+#include <openssl/evp.h>
+
+#include "terrain/require.h"
+
+namespace terra::advisor {
+namespace {
+
+const unsigned char* Bytes(std::string_view text) {
+  return reinterpret_cast<const unsigned char*>(text.data());
+}
+unsigned char* Bytes(std::string& text) {
+  return reinterpret_cast<unsigned char*>(text.data());
+}
+
+}  // namespace
+
+std::string Base64Encode(std::string_view bytes) {
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');
+  const int length = EVP_EncodeBlock(Bytes(text), Bytes(bytes),
+                                     static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::optional<std::string> Base64Decode(std::string_view text) {
+  std::string bytes(text.size() / 4 * 3, '\0');
+  if (text.size() % 4 != 0 ||
+      EVP_DecodeBlock(Bytes(bytes), Bytes(text),
+                      static_cast<int>(text.size())) < 0) {
+    return std::nullopt;
+  }
+  // The decoder pads with zeros and forgives white space at the ends.
+  for (std::size_t i = text.size(); i > 0 && text[i - 1] == '='; --i) {
+    if (bytes.empty()) return std::nullopt;
+    bytes.pop_back();
+  }
+  if (Base64Encode(bytes) != text) {
+    return std::nullopt;
+  }
+  return bytes;
+}
+
+std::string Sha256Hex(std::string_view bytes) {
+  std::array<unsigned char, 32> digest{};
+  TERRA_REQUIRE(EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr,
+                           EVP_sha256(), nullptr) == 1);
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string hex;
+  for (const unsigned char byte : digest) {
+    hex += kDigits[byte >> 4];
+    hex += kDigits[byte & 15];
+  }
+  return hex;
+}
+
+std::string Compress(std::string_view bytes) {
+  std::string compressed(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(compressed.data(), compressed.size(), bytes.data(),
+                    bytes.size(), ZSTD_maxCLevel());
+  TERRA_REQUIRE(ZSTD_isError(size) == 0);
+  compressed.resize(size);
+  return compressed;
+}
+
+std::optional<std::string> Decompress(std::string_view compressed,
+                                      std::size_t max_bytes) {
+  std::string bytes(max_bytes, '\0');
+  const std::size_t size = ZSTD_decompress(
+      bytes.data(), bytes.size(), compressed.data(), compressed.size());
+  if (ZSTD_isError(size) != 0) {
+    return std::nullopt;
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace terra::advisor

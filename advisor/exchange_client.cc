@@ -1,0 +1,118 @@
+#include "advisor/exchange_client.h"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <utility>
+
+#include "advisor/interruptible_wait.h"
+
+namespace terra::advisor {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uintmax_t kMaxAnswerBytes = 1u << 20;
+
+/// Writes under another name first, so that nobody reads half a file.
+bool WriteWhole(const fs::path& path, const std::string& content) {
+  const fs::path part = path.string() + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file << content;
+  file.close();
+  std::error_code failed;
+  fs::rename(part, path, failed);
+  return file.good() && !failed;
+}
+
+bool WriteQuestion(const fs::path& folder, const LlmRequest& request) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  bool written = !failed;
+  int number = 0;
+  for (const auto& picture : request.pictures) {
+    written =
+        written &&
+        WriteWhole(folder / ("image-" + std::to_string(++number) + ".png"),
+                   picture->png);
+  }
+  // Last, so that who sees it finds the pictures too.
+  return written && WriteWhole(folder / "prompt.txt", request.text);
+}
+
+/// Size of the answer file; none while it is missing or empty.
+std::optional<std::uintmax_t> AnswerSize(const fs::path& path) {
+  std::error_code failed;
+  const std::uintmax_t size = fs::file_size(path, failed);
+  return failed || size == 0 ? std::nullopt : std::optional(size);
+}
+
+}  // namespace
+
+std::string ExchangeName(const LlmIdentity& identity,
+                         const LlmRequest& request) {
+  constexpr std::size_t kMaxName = 64;
+  std::string name = request.case_id.substr(0, kMaxName);
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' &&
+               c != '-';
+      },
+      '_');
+  name += "-" + RequestHash(identity, request).substr(0, 12);
+  return request.repeat == 0 ? name
+                             : name + "-" + std::to_string(request.repeat);
+}
+
+ExchangeClient::ExchangeClient(ExchangeOptions options)
+    : options_(std::move(options)),
+      identity_{"exchange", options_.model, "{}", "file"} {}
+
+LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
+  LlmReply reply;
+  const auto begin = Clock::now();
+  const auto seconds = [begin] {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  const fs::path folder =
+      fs::path(options_.folder) / ExchangeName(identity_, request);
+  const fs::path answer = folder / "answer.txt";
+  if (!AnswerSize(answer) && !WriteQuestion(folder, request)) {
+    reply.reason = NoAnswer::kTransport;
+    reply.error = folder.string() + ": the question cannot be written";
+    return reply;
+  }
+  reply.tries = 1;
+  std::optional<std::uintmax_t> before;
+  for (;;) {
+    const auto size = AnswerSize(answer);
+    if (size && size == before) break;
+    before = size;
+    if (seconds() >= options_.deadline_s) {
+      reply.reason = NoAnswer::kDeadline;
+      reply.error = answer.string() + ": no answer in time";
+      return reply;
+    }
+    if (!WaitUnlessStopped(options_.poll_s, stop)) {
+      reply.reason = NoAnswer::kCancelled;
+      return reply;
+    }
+  }
+  reply.t_llm_s = seconds();
+  if (*before > kMaxAnswerBytes) {
+    reply.reason = NoAnswer::kTooLarge;
+    return reply;
+  }
+  std::ifstream file(answer, std::ios::binary);
+  reply.text.assign(std::istreambuf_iterator<char>(file), {});
+  reply.status = ReplyStatus::kAnswered;
+  reply.model = options_.model;
+  return reply;
+}
+
+}  // namespace terra::advisor

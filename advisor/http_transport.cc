@@ -1,0 +1,251 @@
+#include "advisor/http_transport.h"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+
+#include <curl/curl.h>
+
+#include "terrain/require.h"
+
+namespace terra::advisor {
+namespace {
+
+constexpr std::size_t kMaxHeaderBytes = 65'536;
+constexpr int kPollMs = 1'000;
+
+struct CloseEasy {
+  void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
+};
+struct CloseMulti {
+  void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
+};
+struct CloseUrl {
+  void operator()(CURLU* url) const { curl_url_cleanup(url); }
+};
+struct FreeList {
+  void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+};
+using Easy = std::unique_ptr<CURL, CloseEasy>;
+using Multi = std::unique_ptr<CURLM, CloseMulti>;
+using List = std::unique_ptr<curl_slist, FreeList>;
+
+void InitialiseLibrary() {
+  static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
+  TERRA_REQUIRE(code == CURLE_OK);
+}
+
+std::string UrlPart(CURLU* url, CURLUPart part) {
+  char* text = nullptr;
+  if (curl_url_get(url, part, &text, 0) != CURLUE_OK) {
+    return "";
+  }
+  const std::string copy(text);
+  curl_free(text);
+  return copy;
+}
+
+bool IsLoopback(const std::string& host) {
+  const bool digits =
+      host.find_first_not_of("0123456789.") == std::string::npos;
+  return host == "localhost" || host == "[::1]" ||
+         (digits && host.starts_with("127."));
+}
+
+/// What the callbacks write to.
+struct Sink {
+  HttpReply& reply;
+  std::size_t max_bytes;
+  std::size_t header_bytes = 0;
+};
+
+std::size_t TakeBody(char* data, std::size_t, std::size_t size, void* user) {
+  auto& sink = *static_cast<Sink*>(user);
+  if (sink.reply.body.size() + size > sink.max_bytes) {
+    sink.reply.fault = TransportFault::kTooLarge;
+    return 0;
+  }
+  sink.reply.body.append(data, size);
+  return size;
+}
+
+std::size_t TakeHeader(char* data, std::size_t, std::size_t size, void* user) {
+  auto& sink = *static_cast<Sink*>(user);
+  sink.header_bytes += size;
+  if (sink.header_bytes > kMaxHeaderBytes) {
+    sink.reply.fault = TransportFault::kTooLarge;
+    return 0;
+  }
+  const std::string_view line(data, size);
+  const std::size_t colon = line.find(':');
+  if (colon != std::string_view::npos) {
+    std::string name(line.substr(0, colon));
+    std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+      return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
+    std::string_view value = line.substr(colon + 1);
+    while (!value.empty() &&
+           std::isspace(static_cast<unsigned char>(value.front())) != 0) {
+      value.remove_prefix(1);
+    }
+    while (!value.empty() &&
+           std::isspace(static_cast<unsigned char>(value.back())) != 0) {
+      value.remove_suffix(1);
+    }
+    sink.reply.headers[name] = value;
+  }
+  return size;
+}
+
+TransportFault FaultOf(CURLcode code) {
+  switch (code) {
+    case CURLE_OK:
+      return TransportFault::kNone;
+    case CURLE_COULDNT_RESOLVE_HOST:
+    case CURLE_COULDNT_CONNECT:
+    case CURLE_SSL_CONNECT_ERROR:
+      return TransportFault::kConnect;
+    case CURLE_OPERATION_TIMEDOUT:
+      return TransportFault::kTimeout;
+    case CURLE_PARTIAL_FILE:
+    case CURLE_GOT_NOTHING:
+    case CURLE_SEND_ERROR:
+    case CURLE_RECV_ERROR:
+    case CURLE_HTTP2:
+    case CURLE_HTTP2_STREAM:
+      return TransportFault::kBroken;
+    default:
+      return TransportFault::kRefused;
+  }
+}
+
+List HeadersOf(const HttpRequest& request) {
+  curl_slist* list =
+      curl_slist_append(nullptr, "content-type: application/json");
+  // Without this, larger bodies wait a second for a "100 Continue".
+  list = curl_slist_append(list, "Expect:");
+  for (const auto& [name, value] : request.headers) {
+    list = curl_slist_append(list, (name + ": " + value).c_str());
+  }
+  return List(list);
+}
+
+void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
+               Sink& sink) {
+  const auto milliseconds = [](double seconds) {
+    return static_cast<long>(std::max(1.0, seconds * 1000));
+  };
+  curl_easy_setopt(easy, CURLOPT_URL, request.url.c_str());
+  curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 0L);
+  curl_easy_setopt(easy, CURLOPT_SSL_VERIFYPEER, 1L);
+  curl_easy_setopt(easy, CURLOPT_SSL_VERIFYHOST, 2L);
+  curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(easy, CURLOPT_TCP_KEEPALIVE, 1L);
+  curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS,
+                   milliseconds(request.connect_timeout_s));
+  curl_easy_setopt(easy, CURLOPT_TIMEOUT_MS, milliseconds(request.timeout_s));
+  curl_easy_setopt(easy, CURLOPT_POST, 1L);
+  curl_easy_setopt(easy, CURLOPT_POSTFIELDS, request.body.data());
+  curl_easy_setopt(easy, CURLOPT_POSTFIELDSIZE_LARGE,
+                   static_cast<curl_off_t>(request.body.size()));
+  curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers);
+  curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, TakeBody);
+  curl_easy_setopt(easy, CURLOPT_WRITEDATA, &sink);
+  curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, TakeHeader);
+  curl_easy_setopt(easy, CURLOPT_HEADERDATA, &sink);
+  if (request.url.starts_with("http://")) {
+    // Plain text stays on this machine: never by way of a proxy.
+    curl_easy_setopt(easy, CURLOPT_NOPROXY, "*");
+  }
+}
+
+}  // namespace
+
+struct HttpTransport::State {
+  Multi multi;
+  Easy easy;
+};
+
+HttpTransport::HttpTransport() {
+  InitialiseLibrary();
+  state_ = std::make_unique<State>(
+      State{Multi(curl_multi_init()), Easy(curl_easy_init())});
+  if (state_->multi == nullptr || state_->easy == nullptr) {
+    throw std::bad_alloc();
+  }
+}
+
+HttpTransport::~HttpTransport() = default;
+
+HttpReply HttpTransport::Post(const HttpRequest& request,
+                              std::stop_token stop) {
+  HttpReply reply;
+  if (const auto checked = CheckBaseUrl(request.url); !checked) {
+    reply.fault = TransportFault::kRefused;
+    reply.fault_text = checked.error().message;
+    return reply;
+  }
+  CURLM* multi = state_->multi.get();
+  CURL* easy = state_->easy.get();
+  Sink sink{reply, request.max_reply_bytes};
+  const List headers = HeadersOf(request);
+  curl_easy_reset(easy);
+  Configure(easy, request, headers.get(), sink);
+  curl_multi_add_handle(multi, easy);
+  const std::stop_callback wake(stop, [multi] {
+    curl_multi_wakeup(multi);
+  });
+
+  int running = 1;
+  CURLcode result = CURLE_FAILED_INIT;
+  while (running > 0 && !stop.stop_requested()) {
+    if (curl_multi_perform(multi, &running) != CURLM_OK) break;
+    if (running > 0) curl_multi_poll(multi, nullptr, 0, kPollMs, nullptr);
+  }
+  for (int left = 0; CURLMsg* message = curl_multi_info_read(multi, &left);) {
+    if (message->msg == CURLMSG_DONE) result = message->data.result;
+  }
+  long status = 0;
+  curl_easy_getinfo(easy, CURLINFO_RESPONSE_CODE, &status);
+  curl_multi_remove_handle(multi, easy);
+  reply.status = static_cast<int>(status);
+  if (running > 0) {
+    reply.fault = TransportFault::kCancelled;
+    reply.fault_text = "cancelled";
+  } else if (reply.fault == TransportFault::kNone) {
+    reply.fault = FaultOf(result);
+    if (result != CURLE_OK) reply.fault_text = curl_easy_strerror(result);
+  } else {
+    reply.fault_text = "more than " + std::to_string(request.max_reply_bytes) +
+                       " bytes of answer";
+  }
+  return reply;
+}
+
+Result<std::string> CheckBaseUrl(const std::string& url) {
+  InitialiseLibrary();
+  const std::unique_ptr<CURLU, CloseUrl> parsed(curl_url());
+  if (parsed == nullptr ||
+      curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
+    return Error{ErrorCode::kInvalid,
+                 "'" + url + "' is no address; write https://HOST[:PORT]"};
+  }
+  const std::string scheme = UrlPart(parsed.get(), CURLUPART_SCHEME);
+  const bool loopback = IsLoopback(UrlPart(parsed.get(), CURLUPART_HOST));
+  if (!UrlPart(parsed.get(), CURLUPART_USER).empty() ||
+      !UrlPart(parsed.get(), CURLUPART_PASSWORD).empty()) {
+    return Error{ErrorCode::kInvalid,
+                 "an address must not hold a name or password; keys come from "
+                 "the environment"};
+  }
+  if (scheme != "https" && !(scheme == "http" && loopback)) {
+    return Error{ErrorCode::kInvalid,
+                 "'" + url +
+                     "': only https, or http to this machine (127.0.0.1), is "
+                     "allowed"};
+  }
+  return std::string(loopback ? "loopback" : "other");
+}
+
+}  // namespace terra::advisor

@@ -1,0 +1,71 @@
+#include "advisor/limited_client.h"
+
+#include <chrono>
+#include <utility>
+
+#include "advisor/interruptible_wait.h"
+
+namespace terra::advisor {
+namespace {
+
+double NowSeconds() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+LimitedClient::LimitedClient(std::unique_ptr<LlmClient> inner,
+                             const CallLimits& limits, PriceTable prices,
+                             AtLimit at_limit,
+                             std::shared_ptr<CallMonitor> monitor)
+    : inner_(std::move(inner)),
+      gate_(limits),
+      prices_(std::move(prices)),
+      at_limit_(at_limit),
+      monitor_(std::move(monitor)) {}
+
+NoAnswer LimitedClient::PassGate(std::stop_token stop) {
+  for (;;) {
+    const CallGate::Answer answer = gate_.MayCall(NowSeconds());
+    if (answer.reason == NoAnswer::kNone || at_limit_ == AtLimit::kRefuse) {
+      return answer.reason;
+    }
+    if (!WaitUnlessStopped(answer.wait_s, stop)) {
+      return NoAnswer::kCancelled;
+    }
+  }
+}
+
+LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
+  LlmReply reply;
+  reply.reason = PassGate(stop);
+  if (reply.reason == NoAnswer::kNone) {
+    monitor_->Update([](CallFigures& figures) {
+      figures.busy = true;
+    });
+    gate_.Started(NowSeconds());
+    reply = inner_->Ask(request, stop);
+    if (!reply.spend_usd && reply.came()) {
+      reply.spend_usd = prices_.Spend(identity(), reply);
+    }
+    gate_.Ended(reply, NowSeconds());
+  } else {
+    reply.error = "own limit: " + std::string(NoAnswerName(reply.reason));
+  }
+  const double now = NowSeconds();
+  monitor_->Update([&](CallFigures& figures) {
+    figures.busy = false;
+    figures.statistics.Add(reply);
+    figures.spend_last_hour_usd = gate_.spend_last_hour(now);
+    figures.breaker_open = gate_.breaker_open(now);
+    if (!reply.came()) {
+      figures.last_error = std::string(NoAnswerName(reply.reason)) +
+                           (reply.error.empty() ? "" : ": ") + reply.error;
+    }
+  });
+  return reply;
+}
+
+}  // namespace terra::advisor

@@ -1,0 +1,121 @@
+// OpenAI Responses: POST /v1/responses.
+#include "advisor/wire_format.h"
+#include "advisor/wire_json.h"
+
+namespace terra::advisor {
+namespace {
+
+using nlohmann::json;
+
+class OpenAiFormat : public WireFormat {
+ public:
+  std::string_view provider() const override { return "openai"; }
+  std::string_view default_base_url() const override {
+    return "https://api.openai.com";
+  }
+  std::string_view default_model() const override { return "gpt-5.5"; }
+  std::string_view key_variable() const override { return "OPENAI_API_KEY"; }
+
+  std::string Path(const GenerationSettings&) const override {
+    return "/v1/responses";
+  }
+
+  HeaderList Headers(const GenerationSettings&,
+                     const std::string& key) const override {
+    return {{"authorization", "Bearer " + key}};
+  }
+
+  json Body(const LlmRequest& request,
+            const GenerationSettings& settings) const override {
+    json content = json::array();
+    for (const auto& picture : request.pictures) {
+      json part = {{"type", "input_image"}, {"image_url", DataUri(*picture)}};
+      if (!settings.image_detail.empty()) {
+        part["detail"] = settings.image_detail;
+      }
+      content.push_back(std::move(part));
+    }
+    content.push_back({{"type", "input_text"}, {"text", request.text}});
+    json body = {{"model", settings.model},
+                 {"input", {{{"role", "user"}, {"content", content}}}},
+                 {"max_output_tokens", settings.max_output_tokens}};
+    if (!settings.effort.empty()) {
+      body["reasoning"] = {{"effort", settings.effort}};
+    }
+    return body;
+  }
+
+ protected:
+  WireReply ReadReplyJson(const json& reply) const override {
+    WireReply result;
+    result.model = TextOr(reply, "model");
+    result.response_id = TextOr(reply, "id");
+    const json& usage = MemberOf(reply, "usage");
+    result.usage = {
+        CountOr0(usage, "input_tokens"), CountOr0(usage, "output_tokens"),
+        CountOr0(MemberOf(usage, "output_tokens_details"), "reasoning_tokens")};
+    const std::string status = TextOr(reply, "status");
+    if (status == "failed" || status == "cancelled") {
+      const json& error = MemberOf(reply, "error");
+      const std::string code = TextOr(error, "code");
+      result.error = code + ": " + TextOr(error, "message");
+      result.transient =
+          code == "server_error" || code == "rate_limit_exceeded";
+      return result;
+    }
+    if (status != "completed" && status != "incomplete") {
+      result.error = "no final status in the reply";
+      return result;
+    }
+    ReadOutput(reply.at("output"), result);
+    if (status == "incomplete") {
+      const std::string reason =
+          TextOr(MemberOf(reply, "incomplete_details"), "reason");
+      result.status = reason == "content_filter" ? ReplyStatus::kRefused
+                                                 : ReplyStatus::kTruncated;
+      result.error = reason;
+    }
+    return result;
+  }
+
+  void ReadErrorJson(const json& error, WireError& result) const override {
+    result.final = TextOr(error, "code") == "insufficient_quota" ||
+                   TextOr(error, "type") == "insufficient_quota";
+  }
+
+ private:
+  /// Joins the text parts of all messages; where one is marked as the final
+  /// answer, only of those, so that no commentary is glued to a Yes.
+  static void ReadOutput(const json& output, WireReply& result) {
+    bool has_final = false;
+    for (const json& item : output) {
+      has_final = has_final || TextOr(item, "phase") == "final_answer";
+    }
+    std::string refusal;
+    for (const json& item : output) {
+      if (TextOr(item, "type") != "message" ||
+          (has_final && TextOr(item, "phase") != "final_answer")) {
+        continue;
+      }
+      for (const json& part : item.at("content")) {
+        result.text += TextOr(part, "type") == "output_text"
+                           ? part.at("text").get<std::string>()
+                           : "";
+        refusal += TextOr(part, "refusal");
+      }
+    }
+    result.status = ReplyStatus::kAnswered;
+    if (result.text.empty() && !refusal.empty()) {
+      result.status = ReplyStatus::kRefused;
+      result.error = refusal;
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<WireFormat> MakeOpenAiFormat() {
+  return std::make_unique<OpenAiFormat>();
+}
+
+}  // namespace terra::advisor

@@ -1,0 +1,371 @@
+#include "advisor/pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "advisor/fingerprint.h"
+#include "advisor/pixel_font.h"
+#include "terrain/require.h"
+#include "terrain/segment.h"
+
+namespace terra::advisor {
+namespace {
+
+constexpr Color kBlack = {0, 0, 0};
+constexpr Color kWhite = {255, 255, 255};
+constexpr int kTickMarginLeft = 32;
+constexpr int kTickMarginTop = 14;
+constexpr int kPairGap = 8;
+constexpr int kMarkerRadius = 6;
+
+Picture Blank(int width, int height) {
+  Picture picture{width, height, {}};
+  picture.rgb.assign(
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3,
+      255);
+  return picture;
+}
+
+/// Draws on a picture; whatever lies outside is left out.
+class Canvas {
+ public:
+  explicit Canvas(Picture& picture) : picture_(picture) {}
+
+  int width() const { return picture_.width; }
+  int height() const { return picture_.height; }
+
+  std::uint8_t* At(int x, int y) {
+    if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height) {
+      return nullptr;
+    }
+    return picture_.rgb.data() +
+           3 * (static_cast<std::size_t>(y) *
+                    static_cast<std::size_t>(picture_.width) +
+                static_cast<std::size_t>(x));
+  }
+  void Set(int x, int y, Color color) {
+    if (std::uint8_t* pixel = At(x, y)) {
+      pixel[0] = color.r;
+      pixel[1] = color.g;
+      pixel[2] = color.b;
+    }
+  }
+  void Fill(int x, int y, int width, int height, Color color) {
+    for (int row = y; row < y + height; ++row) {
+      for (int column = x; column < x + width; ++column) {
+        Set(column, row, color);
+      }
+    }
+  }
+  /// Moves a pixel a quarter of the way to mid-grey: seen on every terrain.
+  void Fade(int x, int y) {
+    if (std::uint8_t* pixel = At(x, y)) {
+      for (int i = 0; i < 3; ++i) {
+        pixel[i] = static_cast<std::uint8_t>((3 * pixel[i] + 128) / 4);
+      }
+    }
+  }
+  void Text(int x, int y, std::string_view text) {
+    for (const char c : text) {
+      const Glyph& glyph = GlyphOf(c);
+      for (int row = 0; row < kGlyphHeight; ++row) {
+        for (int column = 0; column < kGlyphWidth; ++column) {
+          if (GlyphHas(glyph, column, row)) Set(x + column, y + row, kBlack);
+        }
+      }
+      x += kGlyphWidth + 1;
+    }
+  }
+
+ private:
+  Picture& picture_;
+};
+
+/// The colour of each terrain, and what a cell looks like that is blocked by
+/// the clearance rule though its terrain is not.
+struct Palette {
+  std::array<Color, 256> color{};
+  std::array<double, 256> cost{};
+  int blocked_id = 0;
+
+  explicit Palette(const Legend& legend) {
+    for (const Terrain& terrain : legend.terrains()) {
+      const auto id = static_cast<std::size_t>(terrain.id);
+      color[id] = terrain.color;
+      cost[id] = terrain.cost;
+      if (terrain.cost == kImpassable) blocked_id = terrain.id;
+    }
+  }
+  int ShownId(const TerrainMap& map, int x, int y) const {
+    const int id = map.ids()(y, x);
+    return map.classes()(y, x) == 0 &&
+                   cost[static_cast<std::size_t>(id)] != kImpassable
+               ? blocked_id
+               : id;
+  }
+};
+
+/// The dearest terrain of a block of cells; the lowest id of equal ones.
+int DearestId(const TerrainMap& map, const Palette& palette, int x0, int y0,
+              int side) {
+  int dearest = palette.ShownId(map, x0, y0);
+  for (int y = y0; y < std::min(y0 + side, map.height()); ++y) {
+    for (int x = x0; x < std::min(x0 + side, map.width()); ++x) {
+      const int id = palette.ShownId(map, x, y);
+      const double more = palette.cost[static_cast<std::size_t>(id)];
+      const double most = palette.cost[static_cast<std::size_t>(dearest)];
+      if (more > most || (more == most && id < dearest)) dearest = id;
+    }
+  }
+  return dearest;
+}
+
+int Reduced(int cells, int cells_per_pixel) {
+  return (cells + cells_per_pixel - 1) / cells_per_pixel;
+}
+
+/// A cell's first pixel.
+Cell PixelOf(const PictureFrame& frame, Cell cell) {
+  return {
+      frame.left_px + cell.x / frame.cells_per_pixel * frame.pixels_per_cell,
+      frame.top_px + cell.y / frame.cells_per_pixel * frame.pixels_per_cell};
+}
+
+void DrawTerrain(Canvas& canvas, const TerrainMap& map,
+                 const PictureFrame& frame) {
+  const Palette palette(map.legend());
+  const int columns = Reduced(map.width(), frame.cells_per_pixel);
+  const int rows = Reduced(map.height(), frame.cells_per_pixel);
+  const int side = frame.pixels_per_cell;
+  for (int row = 0; row < rows; ++row) {
+    std::uint8_t* first = canvas.At(frame.left_px, frame.top_px + row * side);
+    std::uint8_t* pixel = first;
+    for (int column = 0; column < columns; ++column) {
+      const int id =
+          frame.cells_per_pixel == 1
+              ? palette.ShownId(map, column, row)
+              : DearestId(map, palette, column * frame.cells_per_pixel,
+                          row * frame.cells_per_pixel, frame.cells_per_pixel);
+      const Color color = palette.color[static_cast<std::size_t>(id)];
+      for (int copy = 0; copy < side; ++copy) {
+        *pixel++ = color.r;
+        *pixel++ = color.g;
+        *pixel++ = color.b;
+      }
+    }
+    const auto bytes = static_cast<std::size_t>(pixel - first);
+    for (int copy = 1; copy < side; ++copy) {
+      std::memcpy(canvas.At(frame.left_px, frame.top_px + row * side + copy),
+                  first, bytes);
+    }
+  }
+}
+
+void DrawAxes(Canvas& canvas, const TerrainMap& map,
+              const PictureFrame& frame) {
+  if (frame.grid_cells == 0) {
+    return;
+  }
+  for (int x = 0; x < map.width(); x += frame.grid_cells) {
+    const int at = PixelOf(frame, {x, 0}).x;
+    for (int y = frame.top_px; y < canvas.height(); ++y) canvas.Fade(at, y);
+    canvas.Fill(at, frame.top_px - 4, 1, 4, kBlack);
+    canvas.Text(at, 1, std::to_string(x));
+  }
+  for (int y = 0; y < map.height(); y += frame.grid_cells) {
+    const int at = PixelOf(frame, {0, y}).y;
+    for (int x = frame.left_px; x < canvas.width(); ++x) canvas.Fade(x, at);
+    canvas.Fill(frame.left_px - 4, at, 4, 1, kBlack);
+    canvas.Text(2, at, std::to_string(y));
+  }
+}
+
+void DrawRoute(Canvas& canvas, const PictureFrame& frame, const Route& route) {
+  const CellPath cells = RasterizeRoute(route);
+  const int side = frame.pixels_per_cell;
+  for (const int edge : {2, 1}) {  // The white edge first, then the line.
+    for (const Cell cell : cells) {
+      const Cell at = PixelOf(frame, cell);
+      canvas.Fill(at.x - edge, at.y - edge, side + 2 * edge, side + 2 * edge,
+                  edge == 2 ? kWhite : kRouteBlue);
+    }
+  }
+}
+
+enum class Marker { kStart, kGoal };
+
+/// Draws a ring or square around a cell, black with a white edge, the cell
+/// itself black, and the letter beside it.
+void DrawMarker(Canvas& canvas, const PictureFrame& frame, Cell cell,
+                Marker marker) {
+  const Cell at = PixelOf(frame, cell);
+  const int half = frame.pixels_per_cell / 2;
+  const Cell centre{at.x + half, at.y + half};
+  const int reach = kMarkerRadius + 2;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      // Distances from the centre in half pixels, squared for the ring.
+      const int d = marker == Marker::kStart
+                        ? dx * dx + dy * dy
+                        : std::max(std::abs(dx), std::abs(dy)) *
+                              std::max(std::abs(dx), std::abs(dy));
+      if (d <= 23 || d >= 65) continue;
+      canvas.Set(centre.x + dx, centre.y + dy,
+                 d >= 30 && d <= 50 ? kBlack : kWhite);
+    }
+  }
+  canvas.Fill(at.x, at.y, frame.pixels_per_cell, frame.pixels_per_cell, kBlack);
+  constexpr int kBoxWidth = kGlyphWidth + 4;
+  constexpr int kBoxHeight = kGlyphHeight + 4;
+  const bool right = centre.x + reach + kBoxWidth < canvas.width();
+  const int box_x = right ? centre.x + reach : centre.x - reach - kBoxWidth + 1;
+  const int box_y = std::clamp(centre.y - kBoxHeight / 2, 0,
+                               std::max(0, canvas.height() - kBoxHeight));
+  canvas.Fill(box_x, box_y, kBoxWidth, kBoxHeight, kBlack);
+  canvas.Fill(box_x + 1, box_y + 1, kBoxWidth - 2, kBoxHeight - 2, kWhite);
+  canvas.Text(box_x + 2, box_y + 2, marker == Marker::kStart ? "S" : "G");
+}
+
+/// Ticks at a round distance, at most about a dozen along the longer side.
+int GridDistance(int cells) {
+  for (const int distance : {5, 10, 20, 50, 100, 200}) {
+    if (cells <= 12 * distance) return distance;
+  }
+  return 500;
+}
+
+}  // namespace
+
+PictureFrame ChooseFrame(int width_cells, int height_cells, bool axes) {
+  TERRA_REQUIRE(width_cells > 0 && height_cells > 0);
+  PictureFrame frame;
+  if (axes) {
+    frame.left_px = kTickMarginLeft;
+    frame.top_px = kTickMarginTop;
+    frame.grid_cells = GridDistance(std::max(width_cells, height_cells));
+    if (2 * width_cells + frame.left_px <= kMaxPictureSide &&
+        2 * height_cells + frame.top_px <= kMaxPictureSide) {
+      frame.pixels_per_cell = 2;
+      return frame;
+    }
+  }
+  while (Reduced(width_cells, frame.cells_per_pixel) + frame.left_px >
+             kMaxPictureSide ||
+         Reduced(height_cells, frame.cells_per_pixel) + frame.top_px >
+             kMaxPictureSide) {
+    ++frame.cells_per_pixel;
+  }
+  return frame;
+}
+
+Picture DrawMap(const TerrainMap& map, const PictureFrame& frame, Cell start,
+                Cell goal, const Route* route) {
+  TERRA_REQUIRE(map.Contains(start) && map.Contains(goal));
+  Picture picture =
+      Blank(frame.left_px + Reduced(map.width(), frame.cells_per_pixel) *
+                                frame.pixels_per_cell,
+            frame.top_px + Reduced(map.height(), frame.cells_per_pixel) *
+                               frame.pixels_per_cell);
+  Canvas canvas(picture);
+  DrawTerrain(canvas, map, frame);
+  DrawAxes(canvas, map, frame);
+  if (route != nullptr) {
+    DrawRoute(canvas, frame, *route);
+  }
+  DrawMarker(canvas, frame, start, Marker::kStart);
+  DrawMarker(canvas, frame, goal, Marker::kGoal);
+  return picture;
+}
+
+Picture DrawReferencePair(const TerrainMap& map, const Route& left,
+                          const Route& right) {
+  PictureFrame frame;
+  while (2 * Reduced(map.width(), frame.cells_per_pixel) + kPairGap >
+             kMaxPictureSide ||
+         Reduced(map.height(), frame.cells_per_pixel) > kMaxPictureSide) {
+    ++frame.cells_per_pixel;
+  }
+  const int width = Reduced(map.width(), frame.cells_per_pixel);
+  const int height = Reduced(map.height(), frame.cells_per_pixel);
+  Picture pair = Blank(2 * width + kPairGap, height);
+  Canvas canvas(pair);
+  canvas.Fill(width, 0, kPairGap, height, {128, 128, 128});
+  int x = 0;
+  for (const Route* route : {&left, &right}) {
+    const Picture half =
+        DrawMap(map, frame, route->front(), route->back(), route);
+    const auto bytes = static_cast<std::size_t>(width) * 3;
+    for (int y = 0; y < height; ++y) {
+      std::memcpy(canvas.At(x, y),
+                  half.rgb.data() + static_cast<std::size_t>(y) * bytes, bytes);
+    }
+    x = width + kPairGap;
+  }
+  return pair;
+}
+
+EncodedPicture EncodePicture(const Picture& picture) {
+  cv::Mat bgr(picture.height, picture.width, CV_8UC3);
+  const std::uint8_t* rgb = picture.rgb.data();
+  std::uint8_t* out = bgr.data;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    out[i] = rgb[i + 2];
+    out[i + 1] = rgb[i + 1];
+    out[i + 2] = rgb[i];
+  }
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", bgr, png);
+  return {std::string(png.begin(), png.end()), picture.width, picture.height,
+          PixelHash(picture)};
+}
+
+Result<Picture> DecodePicture(std::string_view png) {
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t kHeaderBytes = 24;  // Up to the size in IHDR.
+  const auto side = [png](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) {
+      value = (value << 8) | static_cast<std::uint8_t>(png[i]);
+    }
+    return value;
+  };
+  if (png.size() < kHeaderBytes || !png.starts_with(kSignature)) {
+    return Error{ErrorCode::kInvalid, "picture: no PNG"};
+  }
+  if (side(16) > 2u * kMaxPictureSide || side(20) > 2u * kMaxPictureSide) {
+    return Error{ErrorCode::kUnsupported, "picture: too large"};
+  }
+  // imdecode takes no const pointer, and only reads.
+  const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8UC1,
+                      const_cast<char*>(png.data()));
+  const cv::Mat bgr = cv::imdecode(bytes, cv::IMREAD_COLOR);
+  if (bgr.empty()) {
+    return Error{ErrorCode::kInvalid, "picture: a damaged PNG"};
+  }
+  Picture picture = Blank(bgr.cols, bgr.rows);
+  std::uint8_t* out = picture.rgb.data();
+  for (int y = 0; y < bgr.rows; ++y) {
+    const std::uint8_t* row = bgr.ptr(y);
+    for (int x = 0; x < bgr.cols; ++x, row += 3, out += 3) {
+      out[0] = row[2];
+      out[1] = row[1];
+      out[2] = row[0];
+    }
+  }
+  return picture;
+}
+
+std::string PixelHash(const Picture& picture) {
+  Fingerprint hash;
+  hash.Add(picture.width);
+  hash.Add(picture.height);
+  hash.AddBytes(picture.rgb.data(), picture.rgb.size());
+  return hash.Hex();
+}
+
+}  // namespace terra::advisor

@@ -1,0 +1,184 @@
+#include "advisor/provider_client.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <random>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include "advisor/interruptible_wait.h"
+
+namespace terra::advisor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// A key in memory must not reach a core file.
+void LeaveNoCore() {
+  const rlimit none{0, 0};
+  setrlimit(RLIMIT_CORE, &none);
+  prctl(PR_SET_DUMPABLE, 0);
+}
+
+NoAnswer ReasonOf(const TryOutcome& outcome) {
+  switch (outcome.fault) {
+    case TransportFault::kCancelled:
+      return NoAnswer::kCancelled;
+    case TransportFault::kTooLarge:
+      return NoAnswer::kTooLarge;
+    case TransportFault::kNone:
+      return outcome.http_status >= 200 && outcome.http_status < 300
+                 ? NoAnswer::kBadReply
+                 : NoAnswer::kHttpStatus;
+    default:
+      return NoAnswer::kTransport;
+  }
+}
+
+double Jitter() {
+  thread_local std::minstd_rand random(std::random_device{}());
+  return static_cast<double>(random() - std::minstd_rand::min()) /
+         (static_cast<double>(std::minstd_rand::max()) + 1.0);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
+    const std::string& provider, const ProviderOptions& options) {
+  auto format = MakeWireFormat(provider);
+  if (format == nullptr) {
+    return Error{ErrorCode::kNotFound, "no provider '" + provider + "'"};
+  }
+  ProviderOptions full = options;
+  if (full.settings.model.empty()) {
+    full.settings.model = format->default_model();
+  }
+  const bool own_url = full.base_url.empty();
+  if (own_url) full.base_url = format->default_base_url();
+  while (full.base_url.ends_with('/')) full.base_url.pop_back();
+  const auto endpoint = CheckBaseUrl(full.base_url);
+  if (!endpoint) return endpoint.error();
+
+  const std::string variable(format->key_variable());
+  const char* found = std::getenv(variable.c_str());
+  std::string key = found == nullptr ? "" : found;
+  if (key.find_first_of("\r\n") != std::string::npos) {
+    return Error{ErrorCode::kInvalid, variable + " holds a line break"};
+  }
+  if (!key.empty()) {
+    LeaveNoCore();
+  } else if (!format->key_optional() && *endpoint != "loopback") {
+    return Error{ErrorCode::kNotFound,
+                 "no key: set the environment variable " + variable};
+  } else if (!format->key_optional()) {
+    key = "none";  // A test server wants the header, not a secret.
+  }
+  LlmIdentity identity{
+      provider, full.settings.model, SettingsText(*format, full.settings),
+      own_url && *endpoint != "loopback" ? "provider" : *endpoint};
+  return std::unique_ptr<LlmClient>(std::make_unique<ProviderClient>(
+      std::move(format), std::move(full), std::move(identity), std::move(key)));
+}
+
+ProviderClient::ProviderClient(std::unique_ptr<WireFormat> format,
+                               ProviderOptions options, LlmIdentity identity,
+                               std::string key)
+    : format_(std::move(format)),
+      options_(std::move(options)),
+      identity_(std::move(identity)),
+      key_(std::move(key)) {}
+
+LlmReply ProviderClient::Ask(const LlmRequest& request, std::stop_token stop) {
+  HttpRequest http;
+  http.url = options_.base_url + format_->Path(options_.settings);
+  http.headers = format_->Headers(options_.settings, key_);
+  http.body =
+      format_->Body(request, options_.settings)
+          .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+
+  LlmReply reply;
+  const auto begin = Clock::now();
+  for (;;) {
+    const double left = options_.deadline_s - SecondsSince(begin);
+    http.timeout_s = std::min(options_.try_timeout_s, left);
+    const TryOutcome outcome = Try(http, reply, stop);
+    ++reply.tries;
+    reply.t_llm_s = SecondsSince(begin);
+    if (reply.came()) {
+      return reply;
+    }
+    reply.reason = ReasonOf(outcome);
+    if (reply.reason == NoAnswer::kCancelled) {
+      return reply;
+    }
+    const RetryDecision decision = DecideRetry(
+        outcome, reply.tries - 1, Jitter(), std::time(nullptr), options_.retry);
+    const bool late = reply.t_llm_s + decision.wait_s >= options_.deadline_s;
+    if (late && (decision.retry || outcome.fault == TransportFault::kTimeout)) {
+      reply.reason = NoAnswer::kDeadline;
+    }
+    if (late || !decision.retry) {
+      return reply;
+    }
+    if (!WaitUnlessStopped(decision.wait_s, stop)) {
+      reply.reason = NoAnswer::kCancelled;
+      reply.t_llm_s = SecondsSince(begin);
+      return reply;
+    }
+  }
+}
+
+TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
+                               std::stop_token stop) {
+  HttpReply http = transport_.Post(request, stop);
+  TryOutcome outcome;
+  outcome.fault = http.fault;
+  outcome.http_status = reply.http_status = http.status;
+  outcome.headers = std::move(http.headers);
+  if (http.fault != TransportFault::kNone) {
+    reply.error = http.fault_text;
+    return outcome;
+  }
+  if (http.status < 200 || http.status >= 300) {
+    outcome.error = format_->ReadError(http.body);
+    reply.error = "HTTP " + std::to_string(http.status) +
+                  (outcome.error.message.empty() ? "" : ": ") +
+                  WithoutKey(outcome.error.message);
+    return outcome;
+  }
+  WireReply wire = format_->ReadReply(http.body);
+  outcome.reply_failed = wire.transient;
+  reply.status = wire.status;
+  reply.text = WithoutKey(std::move(wire.text));
+  reply.error = WithoutKey(std::move(wire.error));
+  reply.model = WithoutKey(std::move(wire.model));
+  reply.response_id = WithoutKey(std::move(wire.response_id));
+  reply.usage = wire.usage;
+  reply.body = WithoutKey(std::move(http.body));
+  if (reply.came()) {
+    reply.reason = NoAnswer::kNone;
+  }
+  return outcome;
+}
+
+/// Some servers repeat the key in their texts.
+std::string ProviderClient::WithoutKey(std::string text) const {
+  constexpr std::size_t kShortestSecret = 8;
+  if (key_.size() < kShortestSecret) {
+    return text;
+  }
+  for (std::size_t at = 0; (at = text.find(key_, at)) != std::string::npos;) {
+    text.replace(at, key_.size(), "[key]");
+  }
+  return text;
+}
+
+}  // namespace terra::advisor

@@ -1,0 +1,292 @@
+#include "advisor/provider_client.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/scripted_llm_server.h"
+
+namespace terra::advisor {
+namespace {
+
+using testing::ErrorBody;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::ReplyBody;
+using testing::ScriptedLlmServer;
+using testing::ScriptedReply;
+
+constexpr const char* kSecret = "sk-secret-0123456789";
+
+std::unique_ptr<LlmClient> Client(const std::string& provider,
+                                  const std::string& url, double try_s = 5,
+                                  double deadline_s = 20) {
+  ProviderOptions options;
+  options.base_url = url;
+  options.try_timeout_s = try_s;
+  options.deadline_s = deadline_s;
+  options.retry.max_wait_s = 2;
+  auto client = ProviderClient::Create(provider, options);
+  EXPECT_TRUE(client.ok()) << client.error().message;
+  return std::move(client.value());
+}
+
+LlmRequest Question() {
+  LlmRequest request;
+  request.text = "question";
+  request.method = "advisor";
+  return request;
+}
+
+ScriptedReply Good(const std::string& provider,
+                   const std::string& text = "Yes") {
+  ScriptedReply reply;
+  reply.body = ReplyBody(provider, text);
+  return reply;
+}
+
+ScriptedReply Failing(int status, std::string name = "",
+                      std::string value = "") {
+  ScriptedReply reply;
+  reply.status = status;
+  reply.body = ErrorBody("openai", "no");
+  if (!name.empty()) reply.headers = {{name, value}};
+  return reply;
+}
+
+class EveryProviderTest : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, EveryProviderTest,
+                         ::testing::Values("openai", "gemini", "anthropic",
+                                           "chat"),
+                         [](const auto& tested) {
+                           return tested.param;
+                         });
+
+TEST_P(EveryProviderTest, AnswerModelAndTokensAreReadFromTheReply) {
+  ScriptedLlmServer server({Good(GetParam(), "No. [(1, 2), (3, 4)]")});
+  const LlmReply reply = Client(GetParam(), server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.status, ReplyStatus::kAnswered) << reply.error;
+  EXPECT_EQ(reply.text, "No. [(1, 2), (3, 4)]");
+  EXPECT_EQ(reply.model, "scripted");
+  EXPECT_EQ(reply.usage.tokens_in, 1000);
+  EXPECT_EQ(reply.usage.tokens_out, 20);
+  EXPECT_EQ(reply.tries, 1);
+}
+
+TEST_P(EveryProviderTest, RetriesTransientFailuresAtMostThreeTimes) {
+  ScriptedLlmServer server({Failing(503, "retry-after-ms", "1")});
+  const LlmReply reply = Client(GetParam(), server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kHttpStatus);
+  EXPECT_EQ(reply.http_status, 503);
+  EXPECT_EQ(reply.tries, 4);
+  EXPECT_EQ(server.request_count(), 4);
+}
+
+TEST_P(EveryProviderTest, TheKeyIsSentButNeverComesBack) {
+  const std::string variable(MakeWireFormat(GetParam())->key_variable());
+  setenv(variable.c_str(), kSecret, 1);
+  ScriptedReply echo = Good(GetParam(), std::string("No ") + kSecret);
+  ScriptedReply refusal;
+  refusal.status = 401;
+  refusal.body = ErrorBody(GetParam(), std::string("bad key ") + kSecret);
+  ScriptedLlmServer server({echo, refusal});
+  auto client = Client(GetParam(), server.url());
+  unsetenv(variable.c_str());
+  for (int i = 0; i < 2; ++i) {
+    const LlmReply reply = client->Ask(Question(), {});
+    EXPECT_THAT(reply.text, Not(HasSubstr(kSecret)));
+    EXPECT_THAT(reply.error, Not(HasSubstr(kSecret)));
+    EXPECT_THAT(reply.body, Not(HasSubstr(kSecret)));
+  }
+  std::string sent;
+  const auto seen = server.requests();
+  for (const auto& [name, value] : seen.front().headers) {
+    sent += name + ": " + value + "\n";
+  }
+  EXPECT_THAT(sent, HasSubstr(kSecret));
+}
+
+TEST(ProviderClientTest, ARefusedKeyIsNotTriedAgain) {
+  ScriptedLlmServer server({Failing(401)});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.tries, 1);
+  EXPECT_EQ(reply.reason, NoAnswer::kHttpStatus);
+  EXPECT_EQ(reply.error, "HTTP 401: no");
+}
+
+TEST(ProviderClientTest, AnAnswerAfterFailuresCounts) {
+  ScriptedReply reset;
+  reset.reset = true;
+  ScriptedReply half = Good("openai");
+  half.body_share = 0.5;
+  ScriptedLlmServer server(
+      {reset, half, Failing(429, "retry-after-ms", "5"), Good("openai")});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.status, ReplyStatus::kAnswered) << reply.error;
+  EXPECT_EQ(reply.tries, 4);
+}
+
+TEST(ProviderClientTest, AStalledServerCostsOneTryTimeEach) {
+  ScriptedReply stall = Good("openai");
+  stall.body_share = 0.5;
+  stall.stall = true;
+  ScriptedLlmServer server({stall, Good("openai")});
+  const LlmReply reply =
+      Client("openai", server.url(), 0.3)->Ask(Question(), {});
+  EXPECT_EQ(reply.status, ReplyStatus::kAnswered) << reply.error;
+  EXPECT_EQ(reply.tries, 2);
+}
+
+TEST(ProviderClientTest, TheDeadlineHoldsWhateverTheServerDemands) {
+  ScriptedReply silent;
+  silent.silent = true;
+  ScriptedLlmServer server({silent});
+  const LlmReply reply =
+      Client("openai", server.url(), 5, 0.3)->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kDeadline);
+
+  ScriptedLlmServer patient({Failing(429, "retry-after", "1")});
+  const LlmReply late =
+      Client("openai", patient.url(), 5, 0.5)->Ask(Question(), {});
+  EXPECT_EQ(late.reason, NoAnswer::kDeadline);
+  EXPECT_EQ(late.tries, 1);
+}
+
+TEST(ProviderClientTest, ALongerDemandThanAllowedIsAFailure) {
+  ScriptedLlmServer server({Failing(429, "retry-after", "3600")});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kHttpStatus);
+  EXPECT_EQ(reply.tries, 1);
+}
+
+TEST(ProviderClientTest, CancellingEndsACallThatHangs) {
+  ScriptedReply silent;
+  silent.silent = true;
+  ScriptedLlmServer server({silent, Good("openai")});
+  auto client = Client("openai", server.url(), 60, 60);
+  std::stop_source stop;
+  std::jthread caller([&] {
+    server.WaitForRequests(1, 10);
+    stop.request_stop();
+  });
+  const LlmReply reply = client->Ask(Question(), stop.get_token());
+  EXPECT_EQ(reply.reason, NoAnswer::kCancelled);
+  EXPECT_LT(reply.t_llm_s, 30);
+  // And the client is ready for the next call.
+  EXPECT_EQ(client->Ask(Question(), {}).text, "Yes");
+}
+
+TEST(ProviderClientTest, CancellingEndsAWaitBetweenTries) {
+  ScriptedLlmServer server({Failing(429, "retry-after", "2")});
+  auto client = Client("openai", server.url());
+  std::stop_source stop;
+  std::jthread caller([&] {
+    server.WaitForRequests(1, 10);
+    stop.request_stop();
+  });
+  EXPECT_EQ(client->Ask(Question(), stop.get_token()).reason,
+            NoAnswer::kCancelled);
+}
+
+TEST(ProviderClientTest, BodiesThatAreNoReplyAreNoAnswer) {
+  for (const std::string body :
+       {"<html>busy</html>", "", "[1]", "{\"status\": \"completed\"}",
+        "{\"status\":\"completed\",\"output\":\"\xff\"}", "{\"output\": []}"}) {
+    ScriptedReply bad;
+    bad.body = body;
+    bad.content_type = "text/html";
+    ScriptedLlmServer server({bad});
+    const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+    EXPECT_EQ(reply.reason, NoAnswer::kBadReply) << body;
+    EXPECT_EQ(reply.tries, 1) << body;
+    EXPECT_THAT(reply.error, Not(HasSubstr("\xff")));
+  }
+}
+
+TEST(ProviderClientTest, HugeBodiesAreCutOff) {
+  ScriptedReply huge;
+  huge.body = std::string(16u << 20, ' ');
+  ScriptedLlmServer server({huge});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kTooLarge);
+  EXPECT_EQ(reply.tries, 1);
+}
+
+TEST(ProviderClientTest, RedirectsAreNotFollowed) {
+  ScriptedLlmServer target({Good("openai")});
+  ScriptedLlmServer server(
+      {Failing(307, "location", target.url() + "/v1/responses")});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kHttpStatus);
+  EXPECT_EQ(target.request_count(), 0);
+}
+
+TEST(ProviderClientTest, LargeRequestsDoNotWaitForPermission) {
+  ScriptedLlmServer server({Good("openai")});
+  LlmRequest request = Question();
+  request.text.assign(3u << 20, 'x');
+  const LlmReply reply = Client("openai", server.url())->Ask(request, {});
+  EXPECT_EQ(reply.text, "Yes") << reply.error;
+  EXPECT_EQ(server.requests().front().Header("expect"), "");
+}
+
+TEST(ProviderClientTest, AFailureInsideASuccessIsTriedAgainWhenItMayPass) {
+  ScriptedReply failed;
+  failed.body =
+      R"({"status":"failed","error":{"code":"server_error","message":"x"}})";
+  ScriptedReply final;
+  final.body =
+      R"({"status":"failed","error":{"code":"invalid_image","message":"x"}})";
+  ScriptedLlmServer server({failed, Good("openai"), final});
+  auto client = Client("openai", server.url());
+  EXPECT_EQ(client->Ask(Question(), {}).tries, 2);
+  EXPECT_EQ(client->Ask(Question(), {}).tries, 1);
+}
+
+TEST(ProviderClientTest, RealProvidersNeedAKey) {
+  for (const char* provider : {"openai", "gemini", "anthropic"}) {
+    const auto client = ProviderClient::Create(provider, {});
+    ASSERT_FALSE(client.ok()) << provider;
+    EXPECT_THAT(client.error().message, HasSubstr("API_KEY"));
+  }
+}
+
+TEST(ProviderClientTest, PlainHttpIsForThisMachineOnly) {
+  EXPECT_EQ(CheckBaseUrl("http://127.0.0.1:80").value(), "loopback");
+  EXPECT_EQ(CheckBaseUrl("http://localhost").value(), "loopback");
+  EXPECT_EQ(CheckBaseUrl("http://[::1]:5").value(), "loopback");
+  EXPECT_EQ(CheckBaseUrl("https://example.org").value(), "other");
+  for (const char* bad :
+       {"http://example.org", "http://127.0.0.1.example.org",
+        "http://localhost.example.org", "ftp://127.0.0.1", "file:///etc/passwd",
+        "https://user:secret@example.org", "", "http://"}) {
+    EXPECT_FALSE(CheckBaseUrl(bad).ok()) << bad;
+  }
+}
+
+TEST(ProviderClientTest, TenThousandCallsLeaveNothingBehind) {
+  const auto resident_kb = [] {
+    std::ifstream file("/proc/self/statm");
+    long pages = 0;
+    file >> pages >> pages;
+    return pages * 4;
+  };
+  ScriptedLlmServer server(
+      {Failing(503, "retry-after-ms", "1"), Good("chat", "Yes")});
+  auto client = Client("chat", server.url());
+  long before = 0;
+  for (int call = 0; call < 10'000; ++call) {
+    if (call == 1'000) before = resident_kb();
+    ASSERT_EQ(client->Ask(Question(), {}).text, "Yes");
+  }
+  EXPECT_LT(resident_kb() - before, 4'096);
+}
+
+}  // namespace
+}  // namespace terra::advisor

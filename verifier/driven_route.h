@@ -1,0 +1,55 @@
+#pragma once
+
+#include "terrain/cell.h"
+#include "terrain/map.h"
+
+namespace terra::verifier {
+
+/// The deployed route as a robot drives it: its dense cells and how far along
+/// them the robot has come.
+///
+/// Frame:   map cells; indices count the dense cells from 0 = the start.
+/// Threads: one.
+class DrivenRoute {
+ public:
+  /// A pose further than this from the route is off the route.
+  static constexpr int kToleranceCells = 5;
+  /// How far ahead a pose is looked for first, so that a route which comes by
+  /// the same place twice does not lose its place.
+  static constexpr int kWindowCells = 50;
+
+  /// Another route is in force. The place along it is kept where both have the
+  /// same cells up to the robot, else it is the start. Empty = no route.
+  void Follow(const Route& waypoints);
+
+  /// The robot is at this cell, which may be any. Its place never goes back: it
+  /// is the nearest cell within the window ahead, else the first one beyond it
+  /// within the tolerance. A robot that is at neither is off the route until a
+  /// pose is on it again.
+  void OnPose(Cell pose);
+
+  /// Returns whether a proposal may no longer start at this index: the robot
+  /// has passed it or is off the route, or there is no such cell.
+  bool Passed(int index) const;
+
+  /// The dense cell at an index. Pre: not Passed(index).
+  Cell cell(int index) const;
+
+  /// The cost from an index on to the goal. Pre: not Passed(index); the route
+  /// is feasible on the map.
+  double CostFrom(const TerrainMap& map, int index) const;
+
+  /// Returns waypoints that visit exactly the dense cells up to an index, then
+  /// those of the tail. A polyline cut inside a segment would visit others, so
+  /// the cut segment is given by its corners.
+  /// Pre: not Passed(index); the tail starts at cell(index).
+  Route JoinAt(int index, const Route& tail) const;
+
+ private:
+  Route waypoints_;
+  CellPath cells_;
+  std::size_t place_ = 0;
+  bool on_route_ = true;
+};
+
+}  // namespace terra::verifier

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/paper_rows.h"
+#include "terrain/files/csv.h"
 
 namespace terra::benchmark {
 namespace {
@@ -102,6 +103,7 @@ std::string SettingOf(const LoadedRun& run, const std::string& name,
   const auto settings = nlohmann::json::parse(run.description.settings_json);
   const auto found = settings.find(name);
   if (found == settings.end()) return otherwise;
+  if (found->is_number()) return FormatNumber(found->get<double>());
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
@@ -445,10 +447,12 @@ Table PairedTable(const std::vector<LoadedRun>& runs,
           ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
                         others, reference.description.rule);
       if (c.cases == 0) continue;
-      block.rows.push_back(
-          {RowTitle(runs[i]), CountCell(c.cases), CountCell(c.only_first_lower),
-           CountCell(c.only_second_lower), NumberCell(c.mcnemar_p, 4),
-           PercentCell(c.mogr_difference)});
+      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
+                            CountCell(c.only_first_lower),
+                            CountCell(c.only_second_lower),
+                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
+                                               : NumberCell(c.mcnemar_p, 4),
+                            PercentCell(c.mogr_difference)});
     }
   }
   table.blocks.push_back(std::move(block));

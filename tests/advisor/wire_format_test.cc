@@ -30,7 +30,8 @@ LlmRequest GoldenQuestion(const std::string& text) {
 // The longest string in a document that is no picture: the question.
 std::string QuestionIn(const json& body) {
   std::string longest;
-  for (const auto& [path, value] : body.flatten().items()) {
+  const json flat = body.flatten();
+  for (const auto& [path, value] : flat.items()) {
     if (!value.is_string() || !(path.ends_with("/text"))) continue;
     const auto& text = value.get_ref<const std::string&>();
     if (text.size() > longest.size()) longest = text;

@@ -224,5 +224,14 @@ TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
       first.output);
 }
 
+TEST(TerraUsage, ExampleConfigurationsOfTheUnitsAreRead) {
+  for (const std::string name : {"map", "planner", "verifier", "advisor"}) {
+    const RunResult run = testing::RunToEnd(
+        {testing::ProgramPath("terra-" + name), "--config",
+         TERRA_EXAMPLE_CONFIGS "/" + name + "-demo.toml", "--print-config"});
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+  }
+}
+
 }  // namespace
 }  // namespace terra

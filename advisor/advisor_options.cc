@@ -18,6 +18,10 @@ void AddAdvisorOptions(CLI::App& app, AdvisorOptions& options) {
       ->check(CLI::IsMember(names))
       ->type_name("B");
   AddLlmOptions(app, options.llm);
+  app.add_flag("--polish", options.llm.polish,
+               "Also propose each route of a model repaired and refined in a "
+               "corridor around it")
+      ->group("Prompt");
 }
 
 Result<std::unique_ptr<Backend>> MakeBackend(const AdvisorOptions& options) {

@@ -150,10 +150,6 @@ void AddLlmOptions(CLI::App& app, LlmBackendOptions& options) {
   AddPromptOptions(app, options.method, options.references);
   AddProviderOptions(app, service.provider);
   AddLimitOptions(app, service.limits);
-  app.add_flag("--polish", options.polish,
-               "Also propose each route repaired and refined in a corridor "
-               "around it")
-      ->group("Prompt");
   app.add_option("--min-gain", options.min_gain_percent,
                  "Do not ask where the native optimum is not this many percent "
                  "cheaper than the baseline; 0 = always ask")

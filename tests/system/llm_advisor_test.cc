@@ -1,4 +1,6 @@
-// The LLM advisor as a process, beside the deployed path as processes.
+// The LLM advisor as a process, beside the deployed path as processes, and a
+// model server that does everything wrong.
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -47,6 +49,109 @@ ScriptedReply Saying(const std::string& text) {
   ScriptedReply reply;
   reply.body = ReplyBody("chat", text);
   return reply;
+}
+
+struct Fault {
+  std::string name;
+  ScriptedReply reply;
+  std::int8_t kind;   // What the advice says of it.
+  std::string error;  // Its first word.
+};
+
+std::vector<Fault> Faults() {
+  std::vector<Fault> faults;
+  const auto add = [&faults](const std::string& name, std::int8_t kind,
+                             const std::string& error) -> ScriptedReply& {
+    faults.push_back({name, Saying(kCheaper), kind, error});
+    return faults.back().reply;
+  };
+  constexpr std::int8_t kFailed = advice_t::KIND_FAILED;
+  constexpr std::int8_t kMalformed = advice_t::KIND_MALFORMED;
+  add("silence", kFailed, "deadline").silent = true;
+  ScriptedReply& stall = add("stalled body", kFailed, "deadline");
+  stall.body_share = 0.5;
+  stall.stall = true;
+  add("half a body", kFailed, "transport").body_share = 0.5;
+  add("reset", kFailed, "transport").reset = true;
+  for (const int status : {400, 401, 403, 404, 429, 500, 503, 529}) {
+    add("status " + std::to_string(status), kFailed, "http_status").status =
+        status;
+  }
+  add("hour-long wait", kFailed, "http_status") = [] {
+    ScriptedReply reply = Saying("");
+    reply.status = 429;
+    reply.headers = {{"retry-after", "3600"}};
+    return reply;
+  }();
+  add("redirect", kFailed, "http_status") = [] {
+    ScriptedReply reply = Saying("");
+    reply.status = 302;
+    reply.headers = {{"location", "http://127.0.0.1:1/"}};
+    return reply;
+  }();
+  add("page of HTML", kFailed, "bad_reply").body = "<html>busy</html>";
+  add("no UTF-8", kFailed, "bad_reply").body = "{\"choices\":\"\xff\xfe\"}";
+  add("huge body", kFailed, "too_large").body = std::string(12u << 20, ' ');
+  add("refusal", kMalformed, "refused").body =
+      R"({"choices":[{"finish_reason":"content_filter",
+          "message":{"content":null}}]})";
+  add("truncation", kMalformed, "truncated").body =
+      R"({"choices":[{"finish_reason":"length",
+          "message":{"content":"No. [(5, 60), (7"}}]})";
+  add("empty answer", kMalformed, "empty") = Saying("");
+  add("chatter", kMalformed, "no_list") = Saying("What a nice map!");
+  add("fractions", kMalformed, "not_an_integer") =
+      Saying("No. [(5.0, 60), (155, 60)]");
+  return faults;
+}
+
+TEST(LlmAdvisor, EveryFaultIsNothingButMissingAdviceAndTheNextCallIsServed) {
+  Robot robot(BarMap());
+  std::mutex mutex;
+  ScriptedReply next;
+  const auto set_next = [&](const ScriptedReply& reply) {
+    const std::scoped_lock lock(mutex);
+    next = reply;
+  };
+  ScriptedLlmServer server([&](const testing::SeenRequest&) {
+    const std::scoped_lock lock(mutex);
+    return next;
+  });
+  StartDeployedPath(robot);
+  robot.Start("model", ChatOptions(server, "2"));
+  ASSERT_TRUE(robot.WaitForReady("model"));
+  std::int64_t request_id = 100;
+  for (const Fault& fault : Faults()) {
+    SCOPED_TRACE(fault.name);
+    set_next(fault.reply);
+    const auto deployed = robot.Ask(++request_id, kStart, kGoal);
+    ASSERT_TRUE(deployed);
+    EXPECT_EQ(deployed->mode, deployed_t::MODE_BASELINE);
+    const auto advice = robot.advice_bus().WaitFor<advice_t>(
+        [request_id](const advice_t& message) {
+          return message.request_id == request_id;
+        });
+    ASSERT_TRUE(advice);
+    EXPECT_EQ(int{advice->kind}, int{fault.kind});
+    EXPECT_EQ(advice->advice_error.substr(0, fault.error.size()), fault.error);
+    set_next(Saying(kCheaper));
+    ASSERT_TRUE(robot.Ask(++request_id, kStart, kGoal));
+    const auto answered = robot.advice_bus().WaitFor<advice_t>(
+        [request_id](const advice_t& message) {
+          return message.request_id == request_id;
+        });
+    ASSERT_TRUE(answered);
+    EXPECT_EQ(int{answered->kind}, int{advice_t::KIND_PROPOSE})
+        << answered->advice_error;
+    const auto verdict = robot.deployed_bus().WaitFor<terra_msg::verdict_t>(
+        [request_id](const terra_msg::verdict_t& message) {
+          return message.request_id == request_id;
+        });
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(int{verdict->code}, int{terra_msg::verdict_t::CODE_ACCEPTED});
+    robot.deployed_bus().Forget();
+    robot.advice_bus().Forget();
+  }
 }
 
 TEST(LlmAdvisor, ANewRequestEndsTheCallForTheOldOneAtOnce) {

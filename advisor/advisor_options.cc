@@ -33,10 +33,6 @@ void AddAdvisorOptions(CLI::App& app, AdvisorOptions& options) {
                "Also send each proposal repaired and improved in a corridor "
                "around it");
   AddLlmOptions(app, options.llm);
-  app.add_flag("--polish", options.llm.polish,
-               "Also propose each route of a model repaired and refined in a "
-               "corridor around it")
-      ->group("Prompt");
 }
 
 Result<std::unique_ptr<Backend>> MakeBackend(const AdvisorOptions& options) {

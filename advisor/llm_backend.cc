@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "advisor/polish.h"
 #include "terrain/native_search.h"
 #include "terrain/route_text.h"
 
@@ -85,7 +84,6 @@ LlmBackend::LlmBackend(std::string name, LlmService service,
     : name_(std::move(name)),
       service_(std::move(service)),
       method_(options.method),
-      polish_(options.polish),
       min_gain_percent_(options.min_gain_percent),
       pool_(std::move(pool)) {}
 
@@ -125,7 +123,6 @@ AdviceAnswer LlmBackend::Advise(const AdviceTask& task, std::stop_token stop) {
       RequestHash(service_.client->identity(), prepared.request);
   const LlmReply reply = service_.client->Ask(prepared.request, stop);
   Keep(ReadReply(planning_case, method_, reply), reply, answer);
-  if (polish_ && !stop.stop_requested()) AddPolished(task, answer);
   return answer;
 }
 
@@ -155,17 +152,6 @@ void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
   }
   if (answer.kind == AnswerKind::kPropose && answer.candidates.empty()) {
     answer.kind = AnswerKind::kMalformed;
-  }
-}
-
-void LlmBackend::AddPolished(const AdviceTask& task,
-                             AdviceAnswer& answer) const {
-  const std::size_t num_raw = answer.candidates.size();
-  for (std::size_t i = 0; i < num_raw; ++i) {
-    RefineOutput polished =
-        Polish({task.map, task.baseline, task.baseline_cost},
-               answer.candidates[i].route);
-    answer.candidates.push_back({std::move(polished.route), true});
   }
 }
 

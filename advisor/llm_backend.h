@@ -17,9 +17,6 @@ struct LlmBackendOptions {
   LlmServiceOptions service;
   MethodOptions method;
   std::string references;  ///< Pool file; empty = the one that comes along.
-  /// Propose each route once more, repaired and refined in the corridor around
-  /// it and the baseline, as a candidate of its own.
-  bool polish = false;
   /// Percent of the baseline's cost. When the native optimum (a lower bound of
   /// every route) promises less, nobody is asked; 0 = always ask.
   double min_gain_percent = 0;
@@ -49,12 +46,10 @@ class LlmBackend : public Backend {
   bool WorthAsking(const AdviceTask& task) const;
   void Keep(const MethodOutcome& outcome, const LlmReply& reply,
             AdviceAnswer& answer) const;
-  void AddPolished(const AdviceTask& task, AdviceAnswer& answer) const;
 
   std::string name_;
   LlmService service_;
   MethodOptions method_;
-  bool polish_;
   double min_gain_percent_;
   std::shared_ptr<const ReferencePool> pool_;
   mutable std::mutex mutex_;

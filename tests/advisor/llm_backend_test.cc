@@ -174,19 +174,6 @@ TEST(LlmBackendTest, NobodyIsAskedWhereTooLittleCanBeGained) {
             AnswerKind::kPropose);
 }
 
-TEST(LlmBackendTest, PolishingAddsARouteThatIsNoDearerThanTheRawOne) {
-  const Problem problem;
-  ScriptedLlmServer server({Saying(kCheaper)});
-  LlmBackendOptions options = ChatOptions(server.url());
-  options.polish = true;
-  const AdviceAnswer answer = Make(options)->Advise(problem.task(), {});
-  ASSERT_EQ(answer.candidates.size(), 2u);
-  EXPECT_FALSE(answer.candidates[0].polished);
-  EXPECT_TRUE(answer.candidates[1].polished);
-  EXPECT_LE(WalkRoute(problem.map, answer.candidates[1].route).cost,
-            WalkRoute(problem.map, answer.candidates[0].route).cost);
-}
-
 TEST(LlmBackendTest, FailuresInSuccessionOpenTheBreaker) {
   const Problem problem;
   ScriptedReply failing;

@@ -4,13 +4,16 @@
 
 #include "terrain/map.h"
 #include "terrain/search_result.h"
+#include "terrain/sweep_search.h"
 
 namespace terra {
 
 /// How paths are found. All ways find the same costs.
 enum class SearchMethod {
   kAutomatic,  ///< Whichever is expected to be faster.
-  kBuckets,    ///< A* with a bucket queue.
+  kBuckets,    ///< A* with a bucket queue (bucket_search.h).
+  kSweep,      ///< Vectors of cells, row by row (sweep_search.h), where narrow
+               ///< keys hold the result; else A*.
 };
 
 /// The smallest keys (search_keys.h) that a search may add up; it takes wider
@@ -27,6 +30,8 @@ struct NativeSearchOptions {
   /// For tests and measurements; the defaults are right for everybody else.
   SearchMethod method = SearchMethod::kAutomatic;
   KeyWidth keys = KeyWidth::kNarrow;
+  /// Not wider than BestInstructionSet().
+  InstructionSet instructions = BestInstructionSet();
 };
 
 /// Finds cheapest 8-connected paths on all cells, exactly, one after another in

@@ -34,6 +34,13 @@ std::vector<Way> AllWays() {
   ways.push_back(
       {"buckets, doubles",
        {.method = SearchMethod::kBuckets, .keys = KeyWidth::kDouble}});
+  for (const auto set : {InstructionSet::kPortable, InstructionSet::kAvx2,
+                         InstructionSet::kAvx512}) {
+    if (set <= BestInstructionSet()) {
+      ways.push_back({"sweep " + std::to_string(static_cast<int>(set)),
+                      {.method = SearchMethod::kSweep, .instructions = set}});
+    }
+  }
   return ways;
 }
 

@@ -80,7 +80,6 @@ struct East {
     return Window<kLanes - kBy>(entering, lanes, AllLanes());
   }
   static constexpr int kStep = 1;
-  static constexpr int kFirst = 0;
   static constexpr int kLast = kLanes - 1;
 };
 struct West {
@@ -89,7 +88,6 @@ struct West {
     return Window<kBy>(lanes, entering, AllLanes());
   }
   static constexpr int kStep = -1;
-  static constexpr int kFirst = kLanes - 1;
   static constexpr int kLast = 0;
 };
 
@@ -276,8 +274,7 @@ class Sweeper {
       keys = Min(keys, Load<Lanes>(beside) + straight);
       keys = Min(keys, DiagonalPredecessors(y, from, x) + diagonal);
     }
-    const Lanes entering = Splat(row[Way::kFirst - Way::kStep]);
-    keys = Spread<Way>(keys, straight, entering);
+    keys = Spread<Way>(keys, straight, Load<Lanes>(row - Way::kStep * kLanes));
     // A path over a cell whose total reaches the bound is not wanted.
     const Lanes octile = Max(Load<Lanes>(task_.along_x + x) + task_.turn_y[y],
                              Load<Lanes>(task_.turn_x + x) + task_.along_y[y]);
@@ -291,28 +288,32 @@ class Sweeper {
     return true;
   }
 
-  // Hands keys on from lane to lane. The first step brings in the cell before
-  // the block and shows whether there is anything to do; then each lane takes
-  // the best over twice as many lanes, at the sum of the weights between.
+  // Hands keys on from lane to lane, beginning with the last lane of the block
+  // before. The first step shows whether there is anything to do; then each
+  // lane takes the best over twice as many lanes, at the sum of the weights
+  // between. (That sum is the limit for lanes further back in the block before.)
   template <typename Way>
-  Lanes Spread(Lanes keys, Lanes weights, Lanes entering) const {
-    const Lanes once = Way::template Move<1>(keys, entering) + weights;
+  Lanes Spread(Lanes keys, Lanes weights, Lanes before) const {
+    const Lanes once = Way::template Move<1>(keys, before) + weights;
     if (!AnyBelow(once, keys)) {
       return keys;
     }
     return SpreadFurther<Way, 2>(
         Min(keys, once),
-        Min(weights + Way::template Move<1>(weights, limit_), limit_));
+        Min(weights + Way::template Move<1>(weights, limit_), limit_), before);
   }
 
   template <typename Way, int kBy>
-  Lanes SpreadFurther(Lanes keys, Lanes weights) const {
-    if constexpr (kBy >= kLanes) {
+  Lanes SpreadFurther(Lanes keys, Lanes weights, Lanes before) const {
+    if constexpr (kBy > kLanes) {
       return keys;
     } else {
-      keys = Min(keys, Way::template Move<kBy>(keys, limit_) + weights);
-      weights = Min(weights + Way::template Move<kBy>(weights, limit_), limit_);
-      return SpreadFurther<Way, 2 * kBy>(keys, weights);
+      keys = Min(keys, Way::template Move<kBy>(keys, before) + weights);
+      if constexpr (kBy < kLanes) {
+        weights =
+            Min(weights + Way::template Move<kBy>(weights, limit_), limit_);
+      }
+      return SpreadFurther<Way, 2 * kBy>(keys, weights, before);
     }
   }
 

@@ -29,6 +29,28 @@ bool HoldMap(const TerrainMap& map) {
              static_cast<double>(Keys::kLimit);
 }
 
+// Whether a search with these keys is worth starting. A known route's cost
+// settles it; without one narrow keys are tried, and wider ones where the
+// search has met paths beyond them.
+template <typename Keys>
+bool MayHoldResult(const Query& query) {
+  return HoldMap<Keys>(query.map) &&
+         (query.options.upper_bound == kImpassable ||
+          Keys(query.map).KeyAbove(query.options.upper_bound) < Keys::kLimit);
+}
+
+// A* expands few cells where a route is hardly dearer than the empty map's, and
+// vectors of four cells do not make up for the cells it leaves out.
+bool PreferBuckets(const Query& query) {
+  if (query.options.instructions == InstructionSet::kPortable) {
+    return true;
+  }
+  constexpr double kNear = 1.02;
+  const double octile = OctileBound<DoubleKeys>(
+      DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
+  return query.options.upper_bound <= kNear * octile;
+}
+
 }  // namespace
 
 struct NativeSearcher::Workspace {
@@ -38,7 +60,9 @@ struct NativeSearcher::Workspace {
   BucketSearch<DoubleKeys> doubles;
 
   SearchAttempt AttemptNarrow(const Query& query) {
-    if (query.options.method == SearchMethod::kBuckets) {
+    const SearchMethod method = query.options.method;
+    if (method == SearchMethod::kBuckets ||
+        (method == SearchMethod::kAutomatic && PreferBuckets(query))) {
       return Attempt(narrow, query);
     }
     const NarrowKeys keys(query.map);
@@ -81,11 +105,11 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
     result.passes += next.passes;
     last = std::move(next);
   };
-  if (options.keys == KeyWidth::kNarrow && HoldMap<NarrowKeys>(map)) {
+  if (options.keys == KeyWidth::kNarrow && MayHoldResult<NarrowKeys>(query)) {
     attempt(workspace_->AttemptNarrow(query));
   }
   if (last.beyond_keys && options.keys != KeyWidth::kDouble &&
-      HoldMap<WideKeys>(map)) {
+      MayHoldResult<WideKeys>(query)) {
     attempt(Workspace::Attempt(workspace_->wide, query));
   }
   if (last.beyond_keys) {

@@ -24,7 +24,8 @@ enum class KeyWidth { kNarrow, kWide, kDouble };
 struct NativeSearchOptions {
   /// Cost of a known route between the ends (the baseline's): paths that cannot
   /// be cheaper need not be looked at. A route of exactly this cost is found;
-  /// if there is none of this cost or below, the status is kNoRoute.
+  /// if there is none of this cost or below (up to rounding, 1e-9 of it), the
+  /// status is kNoRoute.
   double upper_bound = kImpassable;
 
   /// For tests and measurements; the defaults are right for everybody else.

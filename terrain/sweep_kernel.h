@@ -291,7 +291,8 @@ class Sweeper {
   // Hands keys on from lane to lane, beginning with the last lane of the block
   // before. The first step shows whether there is anything to do; then each
   // lane takes the best over twice as many lanes, at the sum of the weights
-  // between. (That sum is the limit for lanes further back in the block before.)
+  // between. (That sum is the limit for lanes further back in the block
+  // before.)
   template <typename Way>
   Lanes Spread(Lanes keys, Lanes weights, Lanes before) const {
     const Lanes once = Way::template Move<1>(keys, before) + weights;

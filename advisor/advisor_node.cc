@@ -1,8 +1,13 @@
 #include "advisor/advisor_node.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
 #include <utility>
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
 
 #include "bus/codec.h"
 #include "terrain/route_cost.h"
@@ -40,6 +45,15 @@ advice_t ToMessage(const AdviceWorker::Job& job, const AdviceAnswer& answer) {
   return message;
 }
 
+// The deployed path goes first where cores are few: measured on two, baselines
+// waited 4 ms behind a search of normal priority.
+void LowerOwnPriority() {
+  constexpr int kNice = 10;
+  // Without effect where it is refused; then the work is done all the same.
+  static_cast<void>(::setpriority(
+      PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kNice));
+}
+
 }  // namespace
 
 // THREADING: one worker thread runs Backend::Advise. It shares with the acting
@@ -51,6 +65,7 @@ AdviceWorker::AdviceWorker(std::unique_ptr<Backend> backend,
     : backend_(std::move(backend)),
       ready_(std::move(ready)),
       thread_([this](std::stop_token end) {
+        LowerOwnPriority();
         Work(end);
       }) {}
 

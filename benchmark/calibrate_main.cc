@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ void AddParameters(CLI::App& app, tb::MapParameters& p) {
         ->type_name("LOW,HIGH");
   }
   app.add_option("--separation", p.separation);
+  app.add_option("--obstacle-edge-distance", p.obstacle_edge_distance);
   app.add_option("--end-margin", p.end_margin);
   app.add_option("--end-distance", p.end_distance);
 }
@@ -80,28 +82,35 @@ void Print(tb::Subset subset, const std::vector<tb::GapSummary>& rows) {
   }
 }
 
+// A subcommand per subset, because the defaults differ.
+void AddSubset(CLI::App& app, tb::Subset subset) {
+  struct Arguments {
+    tb::MapParameters parameters;
+    std::uint64_t seed = 101;
+    int count = 1000;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->parameters = tb::CalibratedParameters(subset);
+  CLI::App& command = *app.add_subcommand(std::string(SubsetName(subset)));
+  command.add_option("--seed", arguments->seed, "Not the released set's");
+  command.add_option("--count", arguments->count, "Maps to draw");
+  AddParameters(command, arguments->parameters);
+  command.callback([arguments, subset] {
+    Print(subset, Measure(subset, arguments->seed, arguments->count,
+                          arguments->parameters));
+  });
+}
+
 int Run(int argc, char** argv) {
-  // The subset decides the defaults, so it is looked for first.
-  bool hard = false;
-  std::uint64_t seed = 101;
-  int count = 1000;
-  tb::MapParameters parameters;
-  for (int pass = 0; pass < 2; ++pass) {
-    const tb::Subset subset = hard ? tb::Subset::kHard : tb::Subset::kEasy;
-    parameters = tb::CalibratedParameters(subset);
-    CLI::App app{"Oracle gaps of generated maps beside the paper's"};
-    app.add_flag("--hard", hard, "The Hard subset (default: Easy)");
-    app.add_option("--seed", seed, "Not the released set's");
-    app.add_option("--count", count, "Maps to draw");
-    AddParameters(app, parameters);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
+  CLI::App app{"Oracle gaps of generated maps beside the paper's"};
+  app.require_subcommand(1);
+  AddSubset(app, tb::Subset::kEasy);
+  AddSubset(app, tb::Subset::kHard);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
   }
-  const tb::Subset subset = hard ? tb::Subset::kHard : tb::Subset::kEasy;
-  Print(subset, Measure(subset, seed, count, parameters));
   return 0;
 }
 

@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "advisor/encoding.h"
 #include "benchmark/dataset_card.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
-#include "benchmark/sha256.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
 #include "terrain/files/csv.h"
@@ -53,7 +53,8 @@ Result<WrittenCase> WriteCase(const GeneratedCase& generated,
   const Result<std::string> bytes = ReadWholeFile(path, kMaxMapBytes);
   if (!bytes.ok()) return bytes.error();
   WrittenCase result{MapId(generated.map), generated.start, generated.goal, {}};
-  Sha256Hex(*bytes).copy(result.map_sha256.data(), result.map_sha256.size());
+  advisor::Sha256Hex(*bytes).copy(result.map_sha256.data(),
+                                  result.map_sha256.size());
   return result;
 }
 
@@ -106,7 +107,7 @@ CaseTable MakeCaseTable(const std::vector<WrittenSubset>& subsets) {
       lines += DigestLine(id, c.map_id, c.start, c.goal);
     }
   }
-  return {std::move(csv), Sha256Hex(lines)};
+  return {std::move(csv), advisor::Sha256Hex(lines)};
 }
 
 ordered_json ToJson(IntRange range) {
@@ -124,6 +125,7 @@ ordered_json ToJson(const MapParameters& p) {
       {"obstacles", ToJson(p.obstacles)},
       {"obstacle_short_side", ToJson(p.obstacle_short)},
       {"obstacle_long_side", ToJson(p.obstacle_long)},
+      {"obstacle_edge_distance", p.obstacle_edge_distance},
       {"end_margin", p.end_margin},
       {"end_distance", p.end_distance},
       {"strides_with_a_route", p.strides},
@@ -137,7 +139,7 @@ ordered_json ToJson(const MapParameters& p) {
 }
 
 ordered_json ToJson(const Rejections& r) {
-  return {{"polygon_overlaps", r.polygon_overlaps},
+  return {{"polygon_misplaced", r.polygon_misplaced},
           {"map_with_too_few_polygons", r.too_few_polygons},
           {"end_blocked", r.end_blocked},
           {"ends_too_close", r.ends_too_close},
@@ -168,7 +170,7 @@ std::string Sums(const std::vector<std::pair<std::string, std::string>>& files,
                  const std::vector<WrittenSubset>& subsets) {
   std::string text;
   for (const auto& [name, content] : files) {
-    text += Sha256Hex(content) + "  " + name + "\n";
+    text += advisor::Sha256Hex(content) + "  " + name + "\n";
   }
   for (const WrittenSubset& subset : subsets) {
     for (int i = 0; i < static_cast<int>(subset.cases.size()); ++i) {

@@ -31,16 +31,21 @@ bool AllBase(const ByteRaster& raster, const std::vector<RowSpan>& spans) {
   return true;
 }
 
+bool KeepsFromPolygons(const Star& star, const ByteRaster& raster,
+                       const MapParameters& parameters) {
+  return parameters.separation < 0 ||
+         AllBase(raster, PolygonSpans(star.Outline(parameters.separation),
+                                      parameters.side, parameters.side));
+}
+
 // Draws one polygon; false when no place was found for it.
 bool PlacePolygon(ByteRaster& raster, const MapParameters& parameters,
                   IntegerRandom& random, Rejections& rejections) {
   const int side = parameters.side;
   for (int i = 0; i < kPolygonTries; ++i) {
     const Star star = RandomStar(random, parameters.star, side);
-    if (parameters.separation >= 0 &&
-        !AllBase(raster, PolygonSpans(star.Outline(parameters.separation), side,
-                                      side))) {
-      ++rejections.polygon_overlaps;
+    if (!KeepsFromPolygons(star, raster, parameters)) {
+      ++rejections.polygon_misplaced;
       continue;
     }
     FillSpans(raster, PolygonSpans(star.Outline(), side, side),
@@ -77,8 +82,9 @@ void PlaceObstacle(ByteRaster& raster, const MapParameters& parameters,
   int width = random.In(parameters.obstacle_short);
   int height = random.In(parameters.obstacle_long);
   if (random.In(0, 1) == 0) std::swap(width, height);
-  const int x = random.In(0, parameters.side - width);
-  const int y = random.In(0, parameters.side - height);
+  const int edge = parameters.obstacle_edge_distance;
+  const int x = random.In(edge, parameters.side - width - edge);
+  const int y = random.In(edge, parameters.side - height - edge);
   raster.block(y, x, height, width) = kObstacle;
 }
 
@@ -159,27 +165,38 @@ std::optional<Subset> FindSubset(std::string_view name) {
   return std::nullopt;
 }
 
+// Fitted with terra-calibrate on seeds 101 to 203 (docs/benchmark.md).
 MapParameters CalibratedParameters(Subset subset) {
   MapParameters parameters;
   if (subset == Subset::kEasy) {
     parameters.polygons = {4, 7};
     parameters.star = {
-        .radius = {60, 180}, .corners = {5, 9}, .percent = {70, 100}};
-    parameters.separation = 4;
+        .radius = {55, 150}, .corners = {4, 6}, .percent = {70, 100}};
+    parameters.separation = 15;
+    parameters.obstacle_short = {15, 90};
+    parameters.obstacle_long = {30, 100};
+    parameters.obstacle_edge_distance = 24;
+    parameters.end_margin = 5;
+    parameters.end_distance = 400;
   } else {
     parameters.polygons = {7, 10};
     parameters.star = {
-        .radius = {40, 180}, .corners = {5, 11}, .percent = {35, 100}};
+        .radius = {40, 180}, .corners = {5, 11}, .percent = {20, 100}};
     parameters.ribbon = true;
-    parameters.ribbon_half_width = {15, 40};
-    parameters.ribbon_amplitude = {30, 90};
-    parameters.ribbon_angle = {kTurn / 2, kTurn * 2};
+    parameters.ribbon_half_width = {15, 30};
+    parameters.ribbon_amplitude = {20, 60};
+    parameters.ribbon_angle = {kTurn / 2, kTurn * 3 / 2};
+    parameters.obstacle_short = {30, 90};
+    parameters.obstacle_long = {60, 160};
+    parameters.obstacle_edge_distance = 20;
+    parameters.end_margin = 10;
+    parameters.end_distance = 410;
   }
   return parameters;
 }
 
 Rejections& Rejections::operator+=(const Rejections& other) {
-  polygon_overlaps += other.polygon_overlaps;
+  polygon_misplaced += other.polygon_misplaced;
   too_few_polygons += other.too_few_polygons;
   end_blocked += other.end_blocked;
   ends_too_close += other.ends_too_close;

@@ -34,10 +34,13 @@ struct MapParameters {
   IntRange ribbon_amplitude;
   IntRange ribbon_angle;  ///< The wave's angle over the map, in 1/1024 turn.
   IntRange obstacles{1, 2};
-  IntRange obstacle_short{30, 90};
-  IntRange obstacle_long{60, 160};
-  int end_margin = 10;     ///< Of start and goal from the map's edge.
-  int end_distance = 150;  ///< Least Euclidean distance of start and goal.
+  IntRange obstacle_short;
+  IntRange obstacle_long;
+  /// Obstacles keep this far from the map's edge, so that no way round is
+  /// narrower than a lattice is wide.
+  int obstacle_edge_distance = 0;
+  int end_margin = 0;    ///< Of start and goal from the map's edge.
+  int end_distance = 0;  ///< Least Euclidean distance of start and goal.
   /// A lattice route joins the ends at each of these.
   std::vector<int> strides{10, 20, 50, 100};
 };
@@ -48,12 +51,12 @@ MapParameters CalibratedParameters(Subset subset);
 
 /// What was drawn and thrown away on the way to a case.
 struct Rejections {
-  std::int64_t polygon_overlaps = 0;  ///< A polygon, drawn again.
-  std::int64_t too_few_polygons = 0;  ///< The whole map.
-  std::int64_t end_blocked = 0;       ///< Start and goal, drawn again.
-  std::int64_t ends_too_close = 0;    ///< The same.
-  std::int64_t no_lattice_route = 0;  ///< The same.
-  std::int64_t no_ends_found = 0;     ///< The whole map.
+  std::int64_t polygon_misplaced = 0;  ///< A polygon, drawn again.
+  std::int64_t too_few_polygons = 0;   ///< The whole map.
+  std::int64_t end_blocked = 0;        ///< Start and goal, drawn again.
+  std::int64_t ends_too_close = 0;     ///< The same.
+  std::int64_t no_lattice_route = 0;   ///< The same.
+  std::int64_t no_ends_found = 0;      ///< The whole map.
 
   Rejections& operator+=(const Rejections& other);
   friend bool operator==(const Rejections&, const Rejections&) = default;

@@ -1,3 +1,4 @@
+#include <fstream>
 #include <map>
 #include <string>
 
@@ -21,6 +22,22 @@ void AddBenchCommand(CLI::App& app, int& exit_code) {
   AddBenchGenerate(bench, exit_code);
   AddBenchGap(bench, exit_code);
   AddBenchReferences(bench, exit_code);
+  AddBenchRugd(bench, exit_code);
+  AddBenchRun(bench, exit_code);
+  AddBenchMerge(bench, exit_code);
+  AddBenchTable(bench, exit_code);
+  AddBenchReport(bench, exit_code);
+}
+
+std::string CommandLine() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string text;
+  for (std::string argument; std::getline(file, argument, '\0');) {
+    const bool plain = argument.find_first_of(" '\"\\$*") == std::string::npos;
+    text +=
+        (text.empty() ? "" : " ") + (plain ? argument : "'" + argument + "'");
+  }
+  return text;
 }
 
 void AddJobsOption(CLI::App& command, int& jobs) {

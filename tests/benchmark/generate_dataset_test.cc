@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "benchmark/sha256.h"
+#include "advisor/encoding.h"
 #include "terrain/digest.h"
 #include "terrain/files/dataset.h"
 #include "terrain/files/whole_file.h"
@@ -36,14 +36,6 @@ std::string Read(const std::string& path) {
   return ReadWholeFile(path, std::size_t{1} << 26).value();
 }
 
-TEST(Sha256, GivesThePublishedDigests) {
-  // FIPS 180-2, appendix B.
-  EXPECT_EQ(Sha256Hex("abc"),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(Sha256Hex(""),
-            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-}
-
 TEST(GenerateDataset, IsReadBackAsTheGeneratedCases) {
   const TempFolder folder;
   const std::string path = folder.Path("data");
@@ -69,7 +61,7 @@ TEST(GenerateDataset, IsReadBackAsTheGeneratedCases) {
     EXPECT_EQ(MapId(*map), MapId(drawn.map));
     lines += DigestLine(c.case_id, MapId(drawn.map), c.start, c.goal);
   }
-  EXPECT_EQ(*digest, Sha256Hex(lines));
+  EXPECT_EQ(*digest, advisor::Sha256Hex(lines));
 }
 
 TEST(GenerateDataset, ASmallerSetIsTheBeginningOfALargerOne) {
@@ -95,7 +87,7 @@ TEST(GenerateDataset, SumsNameEveryFileWithItsDigest) {
   std::string sum;
   std::string name;
   while (sums >> sum >> name) {
-    EXPECT_EQ(sum, Sha256Hex(Read(path + "/" + name))) << name;
+    EXPECT_EQ(sum, advisor::Sha256Hex(Read(path + "/" + name))) << name;
     ++files;
   }
   EXPECT_EQ(files, 6);  // 4 tables, 2 maps

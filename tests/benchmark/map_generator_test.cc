@@ -39,6 +39,15 @@ TEST(MapGenerator, OtherSubsetSeedOrIndexIsAnotherMap) {
   EXPECT_EQ(map_ids.size(), 32U);
 }
 
+// A change of these numbers is a change of generated maps: kGeneratorVersion
+// and the released set's version must rise with it.
+TEST(MapGenerator, DrawsTheReleasedMaps) {
+  EXPECT_EQ(MapId(Generate(Subset::kEasy, 1, 0).map), 4443176947509108602);
+  EXPECT_EQ(MapId(Generate(Subset::kEasy, 1, 999).map), 3482797810478312961);
+  EXPECT_EQ(MapId(Generate(Subset::kHard, 1, 0).map), 7184357567902156361);
+  EXPECT_EQ(MapId(Generate(Subset::kHard, 1, 999).map), -2301770978868181921);
+}
+
 TEST(MapGenerator, EndsLieInOppositeHalvesAndAreJoinedAtEveryStride) {
   for (const Subset subset : kSubsets) {
     for (int index = 0; index < 15; ++index) {

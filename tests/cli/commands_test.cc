@@ -193,7 +193,7 @@ TEST(TerraUsage, WrongUsageExitsWithTwoAndPointsToHelp) {
 
 TEST(TerraUsage, EveryCommandHasAnExample) {
   for (const char* command :
-       {"plan", "oracle", "verify", "advise", "render", "request"}) {
+       {"plan", "oracle", "verify", "advise", "render", "request", "monitor"}) {
     const RunResult run = Terra({command, "--help"});
     EXPECT_EQ(run.exit_code, 0) << command;
     EXPECT_THAT(run.output, HasSubstr(std::string("terra ") + command + " "))
@@ -222,6 +222,15 @@ TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
   EXPECT_EQ(
       testing::RunToEnd({planner, "--config", config, "--print-config"}).output,
       first.output);
+}
+
+TEST(TerraUsage, ExampleConfigurationsOfTheUnitsAreRead) {
+  for (const std::string name : {"map", "planner", "verifier", "advisor"}) {
+    const RunResult run = testing::RunToEnd(
+        {testing::ProgramPath("terra-" + name), "--config",
+         TERRA_EXAMPLE_CONFIGS "/" + name + "-demo.toml", "--print-config"});
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+  }
 }
 
 }  // namespace

@@ -294,6 +294,22 @@ TEST(RealProcesses, RequestToolPrintsWhatWasDeployed) {
   EXPECT_EQ(testing::ReadBytes(picture).substr(1, 3), "PNG");
 }
 
+TEST(RealProcesses, MonitorShowsRouteVerdictsAndProcesses) {
+  Robot robot(BarMap());
+  StartDeployedPath(robot);
+  robot.Start("advisor");
+  testing::ChildProcess monitor({testing::ProgramPath("terra"), "monitor",
+                                 "--lcm-url", robot.buses().url(), "--for",
+                                 "2.5"});
+  ASSERT_TRUE(robot.Ask(11, kStart, kGoal));
+  ASSERT_EQ(monitor.WaitForExit(testing::BusPeer::kPatience), 0);
+  const std::string view = monitor.output();
+  for (const char* part : {"160 x 120", "candidate of advisor", "accepted",
+                           "planner", "ready, candidate deployed"}) {
+    EXPECT_NE(view.find(part), std::string::npos) << part << " in\n" << view;
+  }
+}
+
 TEST(RealProcesses, RequestToolWithNobodyThereSaysWhatIsMissing) {
   const testing::TestBus buses;
   const auto request = testing::RunToEnd(

@@ -1,0 +1,519 @@
+#include "benchmark/paper_tables.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "benchmark/paper_rows.h"
+#include "terrain/files/csv.h"
+
+namespace terra::benchmark {
+namespace {
+
+// A row of the paper that a run here may stand for.
+struct PaperRow {
+  const char* method;
+  const char* backend;
+  const char* title;
+};
+
+constexpr PaperRow kPaperMethods[] = {
+    {"direct", "openai", "Direct LLM (gpt-5.5)"},
+    {"direct", "gemini", "Direct LLM (gemini-3.1-pro-preview)"},
+    {"direct", "anthropic", "Direct LLM (claude-opus-4-8)"},
+    {"llm-astar", "openai", "LLM-A* (gpt-5.5)"},
+    {"advisor", "openai", "LLM-Advisor (gpt-5.5)"},
+    {"advisor", "gemini", "LLM-Advisor (gemini-3.1-pro-preview)"},
+    {"advisor", "anthropic", "LLM-Advisor (claude-opus-4-8)"},
+};
+
+std::string KeyVariable(const std::string& backend) {
+  if (backend == "openai") return "OPENAI_API_KEY";
+  if (backend == "gemini") return "GEMINI_API_KEY";
+  return "ANTHROPIC_API_KEY";
+}
+
+// What would measure a row.
+std::string Command(const std::string& method, const std::string& backend,
+                    const std::string& more = "") {
+  return "not measured; " + KeyVariable(backend) +
+         "=... terra bench run --dataset DIR --method " + method +
+         " --backend " + backend + more + " --out runs/" + method + "-" +
+         backend;
+}
+
+// Recordings name the provider that answered.
+std::string ProviderOf(const LoadedRun& run) {
+  return SettingOf(run, "provider", run.description.backend);
+}
+
+bool Measured(const std::vector<LoadedRun>& runs, const std::string& method,
+              const std::string& backend) {
+  return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& run) {
+    return run.description.method == method && ProviderOf(run) == backend &&
+           !run.description.simulated;
+  });
+}
+
+std::vector<std::string> GroupsOfAll(const std::vector<LoadedRun>& runs) {
+  std::vector<std::string> groups;
+  for (const LoadedRun& run : runs) {
+    for (const std::string& group : GroupsOf(run)) {
+      if (std::find(groups.begin(), groups.end(), group) == groups.end()) {
+        groups.push_back(group);
+      }
+    }
+  }
+  return groups;
+}
+
+Metrics MetricsOf(const LoadedRun& run, const std::string& group) {
+  return ComputeMetrics(ScoresOfGroup(run, group), run.description.rule);
+}
+
+std::string DatasetText(const std::vector<LoadedRun>& runs) {
+  if (runs.empty()) return "";
+  const RunDescription& d = runs.front().description;
+  return (d.dataset_name.empty() ? "unnamed dataset" : d.dataset_name) +
+         (d.dataset_version.empty() ? "" : " " + d.dataset_version);
+}
+
+constexpr const char* kIntervalNote =
+    "Small figures: 95 % intervals; rates Wilson, means bootstrap over cases "
+    "(10,000 resamples, fixed seed).";
+constexpr const char* kNotTheirMaps =
+    "These are not the paper's maps: generated after its description and "
+    "calibrated to its gap table.";
+
+void AddMissing(const std::vector<LoadedRun>& runs, Table& table) {
+  TableBlock missing;
+  missing.heading = "Not measured here";
+  for (const PaperRow& row : kPaperMethods) {
+    if (Measured(runs, row.method, row.backend)) continue;
+    missing.rows.push_back({row.title, Command(row.method, row.backend)});
+  }
+  if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+}
+
+}  // namespace
+
+std::string SettingOf(const LoadedRun& run, const std::string& name,
+                      const std::string& otherwise) {
+  const auto settings = nlohmann::json::parse(run.description.settings_json);
+  const auto found = settings.find(name);
+  if (found == settings.end()) return otherwise;
+  if (found->is_number()) return FormatNumber(found->get<double>());
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+bool IsPlain(const LoadedRun& run) {
+  return SettingOf(run, "noise", "0") == "0" &&
+         SettingOf(run, "overlay", "true") == "true" &&
+         SettingOf(run, "route_text", "true") == "true" &&
+         SettingOf(run, "rea", "true") == "true";
+}
+
+std::string RowTitle(const LoadedRun& run) {
+  std::string title = run.description.title;
+  if (run.description.asks_model) {
+    std::string models;
+    for (const std::string& model : run.description.models) {
+      models += (models.empty() ? "" : ", ") + model;
+    }
+    title += ": " + (models.empty() ? "model not named" : models) +
+             " (asked for " + SettingOf(run, "model", "?") + ")";
+  }
+  if (run.description.simulated) title += " [SIMULATED]";
+  if (!run.complete()) title += " [incomplete]";
+  return title;
+}
+
+Table ComparisonTable(const std::vector<LoadedRun>& runs,
+                      const std::string& group) {
+  Table table;
+  table.id = "comparison-" + group;
+  table.title = "Main comparison, " + group + " subset of " +
+                DatasetText(runs) + ", against the coarse-lattice baseline";
+  table.columns = {{"Method"},
+                   {"N_Lower"},
+                   {"N_NonImproving"},
+                   {"N_Suggested"},
+                   {"FIR %", true},
+                   {"NDR %", true},
+                   {"Final validity %", true},
+                   {"ACR_lower %", true},
+                   {"FPS"}};
+  TableBlock measured;
+  measured.heading = "Measured here";
+  for (const LoadedRun& run : runs) {
+    const Metrics m = MetricsOf(run, group);
+    if (m.paths == 0) continue;
+    measured.rows.push_back(
+        {RowTitle(run), CountCell(m.lower), CountCell(m.non_improving()),
+         CountCell(m.suggested), PercentCell(m.fir), PercentCell(m.ndr),
+         PercentCell(m.validity), PercentCell(m.acr), NumberCell(m.fps, 2)});
+  }
+  table.blocks.push_back(std::move(measured));
+  AddMissing(runs, table);
+  table.blocks.push_back(PaperBlock(table.id, table.columns));
+  table.notes = {kIntervalNote, kNotTheirMaps,
+                 "FPS = cases over the sum of their end-to-end times; from "
+                 "runs with several jobs it is a lower bound."};
+  return table;
+}
+
+Table ProposalTable(const std::vector<LoadedRun>& runs,
+                    const std::string& group) {
+  Table table;
+  table.id = "proposals-" + group;
+  table.title = "Proposal quality and recovery, " + group + " subset";
+  table.columns = {
+      {"Method"},           {"N_Path"},           {"No baseline"},
+      {"N_NoAnswer"},       {"N_Invalid"},        {"ASR %", true},
+      {"ISR %", true},      {"ISR strict %"},     {"VNSR %", true},
+      {"Gap rate %", true}, {"Mean gap %", true}, {"MOGR %", true}};
+  TableBlock block;
+  for (const LoadedRun& run : runs) {
+    const Metrics m = MetricsOf(run, group);
+    if (m.paths == 0) continue;
+    TableCell strict = PercentCell(m.strict_isr);
+    strict.low.clear();
+    block.rows.push_back({RowTitle(run), CountCell(m.paths),
+                          CountCell(m.without_baseline), CountCell(m.no_answer),
+                          CountCell(m.invalid), PercentCell(m.asr),
+                          PercentCell(m.isr), strict, PercentCell(m.vnsr),
+                          PercentCell(m.gap_rate), PercentCell(m.mean_gap),
+                          PercentCell(m.mogr)});
+  }
+  table.blocks.push_back(std::move(block));
+  table.notes = {kIntervalNote,
+                 "ISR strict counts answers that were read but not in the "
+                 "exact form as invalid. MOGR is for methods with fallback."};
+  return table;
+}
+
+Table OracleGapTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "oracle-gap";
+  table.title =
+      "Gap of the coarse lattice to the native optimum, and how much "
+      "of it is recovered, by stride";
+  table.columns = {{"Subset"},           {"Stride"},      {"Method"},
+                   {"N_Comparable"},     {"N_Gap"},       {"Gap rate %", true},
+                   {"Mean gap %", true}, {"MOGR %", true}};
+  std::vector<const LoadedRun*> by_stride;
+  for (const LoadedRun& run : runs) {
+    if (run.description.rule.fallback) by_stride.push_back(&run);
+  }
+  std::stable_sort(by_stride.begin(), by_stride.end(),
+                   [](const LoadedRun* a, const LoadedRun* b) {
+                     return a->description.stride < b->description.stride;
+                   });
+  TableBlock block;
+  block.heading = "Measured here";
+  for (const std::string& group : GroupsOfAll(runs)) {
+    for (const LoadedRun* run : by_stride) {
+      const Metrics m = MetricsOf(*run, group);
+      if (m.paths == 0) continue;
+      block.rows.push_back({group, CountCell(run->description.stride),
+                            RowTitle(*run), CountCell(m.comparable),
+                            CountCell(m.gaps), PercentCell(m.gap_rate),
+                            PercentCell(m.mean_gap), PercentCell(m.mogr)});
+    }
+  }
+  table.blocks.push_back(std::move(block));
+  TableBlock paper;
+  paper.heading = kPaperHeading;
+  paper.published = true;
+  for (const Subset subset : {Subset::kEasy, Subset::kHard}) {
+    for (const int stride : {10, 20, 50, 100}) {
+      const PaperGap row = PaperGapOf(subset, stride);
+      const auto n = static_cast<std::int64_t>(row.gap_rate * 10 + 0.5);
+      paper.rows.push_back({std::string(SubsetName(subset)), CountCell(stride),
+                            "LLM-Advisor (GPT-5.5)", CountCell(1000),
+                            CountCell(n), NumberCell(row.gap_rate, 2),
+                            NumberCell(row.mean_gap, 2),
+                            NumberCell(row.mogr, 2)});
+    }
+  }
+  table.blocks.push_back(std::move(paper));
+  table.notes = {kIntervalNote, kNotTheirMaps};
+  return table;
+}
+
+Table AblationTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "ablation";
+  table.title = "Ablation of what the advisor is shown";
+  table.columns = {{"Setting"},           {"Subset"},      {"Model"},
+                   {"N_Suggested"},       {"ASR %", true}, {"FIR %", true},
+                   {"ACR_lower %", true}, {"ISR %", true}, {"VNSR %", true}};
+  struct Setting {
+    const char* name;
+    const char* overlay;
+    const char* route_text;
+    const char* rea;
+    const char* switches;
+  };
+  constexpr Setting kSettings[] = {
+      {"full advisor", "true", "true", "true", ""},
+      {"without overlay and route text", "false", "false", "true",
+       " --no-overlay --no-route-text"},
+      {"without route text", "true", "false", "true", " --no-route-text"},
+      {"without REA", "true", "true", "false", " --no-rea"}};
+  TableBlock measured;
+  measured.heading = "Measured here";
+  TableBlock missing;
+  missing.heading = "Not measured here";
+  for (const Setting& setting : kSettings) {
+    bool found = false;
+    for (const LoadedRun& run : runs) {
+      if (run.description.method != "advisor" || !run.description.asks_model ||
+          SettingOf(run, "noise", "0") != "0" ||
+          SettingOf(run, "overlay", "true") != setting.overlay ||
+          SettingOf(run, "route_text", "true") != setting.route_text ||
+          SettingOf(run, "rea", "true") != setting.rea) {
+        continue;
+      }
+      found = found || !run.description.simulated;
+      for (const std::string& group : GroupsOf(run)) {
+        const Metrics m = MetricsOf(run, group);
+        measured.rows.push_back({setting.name, group, RowTitle(run),
+                                 CountCell(m.suggested), PercentCell(m.asr),
+                                 PercentCell(m.fir), PercentCell(m.acr),
+                                 PercentCell(m.isr), PercentCell(m.vnsr)});
+      }
+    }
+    if (!found) {
+      missing.rows.push_back(
+          {setting.name, Command("advisor", "openai", setting.switches)});
+    }
+  }
+  if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
+  if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+  table.blocks.push_back(PaperBlock(table.id, table.columns));
+  table.notes = {kIntervalNote,
+                 "Full advisor: overlay, route text and reference pair (REA)."};
+  return table;
+}
+
+Table RugdTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "rugd";
+  table.title = "RUGD semantic-cost transfer, by scene";
+  table.columns = {{"Method"},      {"Scene"},
+                   {"N_Path"},      {"N_Suggested"},
+                   {"N_Lower"},     {"ASR %", true},
+                   {"FIR %", true}, {"ACR_lower %", true},
+                   {"ISR %", true}, {"VNSR %", true},
+                   {"NDR %", true}, {"Final validity %", true},
+                   {"FPS"}};
+  TableBlock measured;
+  measured.heading = "Measured here";
+  for (const LoadedRun& run : runs) {
+    for (const char* scene : {"creek", "park", "trail", "village"}) {
+      const Metrics m = MetricsOf(run, scene);
+      if (m.paths == 0) continue;
+      measured.rows.push_back(
+          {RowTitle(run), scene, CountCell(m.paths), CountCell(m.suggested),
+           CountCell(m.lower), PercentCell(m.asr), PercentCell(m.fir),
+           PercentCell(m.acr), PercentCell(m.isr), PercentCell(m.vnsr),
+           PercentCell(m.ndr), PercentCell(m.validity), NumberCell(m.fps, 2)});
+    }
+  }
+  if (measured.rows.empty()) {
+    measured.rows.push_back(
+        {"all methods",
+         "not measured; terra bench rugd --annotations DIR --out rugd, then "
+         "terra bench run --dataset rugd --method advisor --backend shortcut "
+         "--out runs/rugd-shortcut"});
+  }
+  table.blocks.push_back(std::move(measured));
+  AddMissing(runs, table);
+  table.blocks.push_back(PaperBlock(table.id, table.columns));
+  table.notes = {
+      "Intervals of means: bootstrap over sequences, not frames.",
+      "Frames in the paper (used of all): creek 745 of 836, park 1,638 of "
+      "1,640, trail 3,875 of 4,843, village 117 of 117.",
+      "Derived from RUGD (Wigness et al., IROS 2019), which states no licence: "
+      "do not redistribute."};
+  return table;
+}
+
+Table LatencyTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "latency";
+  table.title = "Online latency, one case at a time";
+  table.columns = {
+      {"Method"},   {"Subset"},  {"N_Path"},  {"Online LLM calls / case"},
+      {"T_prep s"}, {"T_llm s"}, {"T_det s"}, {"Median T_e2e s"},
+      {"p95 s"}};
+  TableBlock measured;
+  measured.heading = "Measured here";
+  for (const LoadedRun& run : runs) {
+    if (run.description.jobs != 1) continue;
+    for (const std::string& group : GroupsOf(run)) {
+      const Metrics m = MetricsOf(run, group);
+      if (m.paths == 0) continue;
+      const bool model = run.description.asks_model;
+      measured.rows.push_back({RowTitle(run), group, CountCell(m.paths),
+                               model ? "1" : "0", NumberCell(m.prep_median, 4),
+                               model ? NumberCell(m.llm_median, 3) : "-",
+                               NumberCell(m.det_median, 4),
+                               NumberCell(m.e2e_median, 4),
+                               NumberCell(m.e2e_p95, 4)});
+    }
+  }
+  if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
+  AddMissing(runs, table);
+  table.blocks.push_back(PaperBlock(table.id, table.columns));
+  table.notes = {
+      "Medians of each stage, p95 by nearest rank; only runs with --jobs 1.",
+      "T_prep: map decoding, pictures, text, encoding. T_det: baseline "
+      "planning where the method has one, parsing, native legs, verification "
+      "and comparison. Other machine than the paper's."};
+  return table;
+}
+
+Table NoiseTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "noise";
+  table.title = "Noise on the map that the model is shown";
+  table.columns = {{"Method"},
+                   {"Subset"},
+                   {"Noise %"},
+                   {"N_Path"},
+                   {"N_Suggested"},
+                   {"N_Lower"},
+                   {"ASR %", true},
+                   {"ISR %", true},
+                   {"VNSR %", true},
+                   {"FIR %", true},
+                   {"ACR_lower %", true},
+                   {"NDR %", true}};
+  TableBlock measured;
+  measured.heading = "Measured here";
+  TableBlock missing;
+  missing.heading = "Not measured here";
+  for (const char* noise : {"0", "5", "10"}) {
+    bool found = false;
+    for (const LoadedRun& run : runs) {
+      if (!run.description.asks_model || run.description.method != "advisor" ||
+          SettingOf(run, "noise", "0") != noise) {
+        continue;
+      }
+      found = found || !run.description.simulated;
+      for (const std::string& group : GroupsOf(run)) {
+        const Metrics m = MetricsOf(run, group);
+        measured.rows.push_back(
+            {RowTitle(run), group, noise, CountCell(m.paths),
+             CountCell(m.suggested), CountCell(m.lower), PercentCell(m.asr),
+             PercentCell(m.isr), PercentCell(m.vnsr), PercentCell(m.fir),
+             PercentCell(m.acr), PercentCell(m.ndr)});
+      }
+    }
+    if (!found) {
+      missing.rows.push_back(
+          {std::string("LLM-Advisor (gpt-5.5), noise ") + noise + " %",
+           Command("advisor", "openai",
+                   std::string(" --cases 50 --noise ") + noise)});
+    }
+  }
+  if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
+  if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+  table.blocks.push_back(PaperBlock(table.id, table.columns));
+  table.notes = {
+      "The first 50 cases of each subset. Baseline, its description "
+      "and all checks use the clean map."};
+  return table;
+}
+
+Table PairedTable(const std::vector<LoadedRun>& runs,
+                  const std::string& group) {
+  Table table;
+  table.id = "paired-" + group;
+  table.columns = {{"Method"},        {"Cases"},
+                   {"Only it lower"}, {"Only the other lower"},
+                   {"McNemar p"},     {"MOGR difference %", true}};
+  TableBlock block;
+  if (!runs.empty()) {
+    const LoadedRun& reference = runs.front();
+    table.title =
+        "Paired by case against: " + RowTitle(reference) + " (" + group + ")";
+    const std::vector<Score> others = ScoresOfGroup(reference, group);
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+      const Comparison c =
+          ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
+                        others, reference.description.rule);
+      if (c.cases == 0) continue;
+      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
+                            CountCell(c.only_first_lower),
+                            CountCell(c.only_second_lower),
+                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
+                                               : NumberCell(c.mcnemar_p, 4),
+                            PercentCell(c.mogr_difference)});
+    }
+  }
+  table.blocks.push_back(std::move(block));
+  table.notes = {
+      "McNemar: exact, two-sided, of FIR. MOGR difference: paired "
+      "bootstrap over cases; - for methods without fallback."};
+  return table;
+}
+
+Table JointsTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "joints";
+  table.title =
+      "Sensitivity to the rule that joins start and goal to the "
+      "lattice";
+  table.columns = {{"Joints"},           {"Subset"},
+                   {"Stride"},           {"N_Comparable"},
+                   {"Gap rate %", true}, {"Mean gap %", true}};
+  TableBlock block;
+  for (const LoadedRun& run : runs) {
+    if (run.description.method != "coarse") continue;
+    for (const std::string& group : GroupsOf(run)) {
+      const Metrics m = MetricsOf(run, group);
+      block.rows.push_back({run.description.joints, group,
+                            CountCell(run.description.stride),
+                            CountCell(m.comparable), PercentCell(m.gap_rate),
+                            PercentCell(m.mean_gap)});
+    }
+  }
+  table.blocks.push_back(std::move(block));
+  table.notes = {
+      "2r: nodes within two strides (this project's choice). cell: "
+      "the corners of the enclosing lattice cell. visible: every "
+      "node that a feasible segment reaches."};
+  return table;
+}
+
+Table RunsTable(const std::vector<LoadedRun>& runs) {
+  Table table;
+  table.id = "runs";
+  table.title = "What produced the rows";
+  table.columns = {{"Row"},     {"Folder"}, {"Dataset"}, {"Cases"},
+                   {"Stride"},  {"Joints"}, {"Jobs"},    {"Build"},
+                   {"Started"}, {"Command"}};
+  TableBlock block;
+  for (const LoadedRun& run : runs) {
+    const RunDescription& d = run.description;
+    block.rows.push_back(
+        {RowTitle(run), run.folder,
+         d.dataset_name + " " + d.dataset_version + " " +
+             d.dataset_digest.substr(0, 12),
+         CountCell(static_cast<std::int64_t>(run.scores.size())),
+         CountCell(d.stride), d.joints, CountCell(d.jobs), d.build_id,
+         d.started.empty() ? "" : d.started.front(), d.command_line});
+  }
+  table.blocks.push_back(std::move(block));
+  if (!runs.empty()) {
+    table.notes = {"Machine of the first run: " +
+                   runs.front().description.machine};
+  }
+  return table;
+}
+
+}  // namespace terra::benchmark

@@ -1,0 +1,327 @@
+#include "benchmark/run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "advisor/encoding.h"
+#include "benchmark/parallel.h"
+#include "benchmark/progress.h"
+#include "benchmark/results_file.h"
+#include "benchmark/run_description.h"
+#include "benchmark/stopwatch.h"
+#include "terrain/digest.h"
+#include "terrain/files/whole_file.h"
+#include "terrain/native_search.h"
+
+namespace terra::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxTableBytes = std::size_t{1} << 30;
+// Where costs are no exact units the same route may sum up to a hair more.
+constexpr double kBoundSlack = 1 + 1e-9;
+
+// A method's open results.
+struct OpenRun {
+  const MethodRun* run = nullptr;
+  std::unique_ptr<ResultsFile> results;
+  RunDescription description;
+  std::set<std::string> models;
+};
+
+std::string DescriptionPath(const MethodRun& run) {
+  return (fs::path(run.folder) / "run.json").string();
+}
+
+// A new run.json, or the one that is there with one more start.
+Result<RunDescription> BeginDescription(const MethodRun& run,
+                                        RunDescription description) {
+  const std::string path = DescriptionPath(run);
+  if (fs::exists(path)) {
+    const Result<RunDescription> before = ReadRunDescription(path);
+    if (!before.ok()) return before.error();
+    if (!before->SameFigures(description) ||
+        before->shard.index != description.shard.index ||
+        before->shard.count != description.shard.count) {
+      return Error{ErrorCode::kInvalid,
+                   run.folder +
+                       " holds another run (see its run.json); "
+                       "choose another folder or remove it"};
+    }
+    description.started = before->started;
+    description.started.push_back(UtcNow());
+    description.models = before->models;
+  }
+  const Status written = WriteRunDescription(description, path);
+  if (!written.ok()) return written.error();
+  return description;
+}
+
+Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
+                     RunDescription description) {
+  std::error_code failed;
+  fs::create_directories(run.folder, failed);
+  if (failed) {
+    return Error{ErrorCode::kUnavailable, run.folder + ": " + failed.message()};
+  }
+  OpenRun open;
+  open.run = &run;
+  auto results =
+      ResultsFile::Open((fs::path(run.folder) / "results.csv").string(),
+                        options.cases, options.repeats);
+  if (!results.ok()) return results.error();
+  open.results = *std::move(results);
+  Result<RunDescription> begun = BeginDescription(run, std::move(description));
+  if (!begun.ok()) return begun.error();
+  open.description = *std::move(begun);
+  open.models.insert(open.description.models.begin(),
+                     open.description.models.end());
+  return open;
+}
+
+// What all methods share of a case.
+struct CaseWork {
+  const DatasetCase& dataset_case;
+  TerrainMap map;
+  std::int64_t map_id = 0;
+  double t_map = 0;
+  planner::LatticePlan baseline;
+  double t_baseline = 0;
+  double oracle_cost = kImpassable;
+};
+
+Result<CaseWork> BeginCase(const Dataset& dataset, const DatasetCase& c,
+                           const RunOptions& options) {
+  const Stopwatch map_watch;
+  Result<TerrainMap> map = ReadCaseMap(dataset, c, options.cost_model);
+  if (!map.ok()) return map.error();
+  const double t_map = map_watch.Seconds();
+  const Stopwatch plan_watch;
+  planner::LatticePlan baseline =
+      planner::PlanOnLattice(*map, c.start, c.goal, options.lattice);
+  const double t_baseline = plan_watch.Seconds();
+  NativeSearchOptions search;
+  search.upper_bound = baseline.cost * kBoundSlack;
+  const double oracle = NativeSearch(*map, c.start, c.goal, search).cost;
+  const std::int64_t map_id = MapId(*map);
+  return CaseWork{c,     *std::move(map),     map_id,
+                  t_map, std::move(baseline), t_baseline,
+                  oracle};
+}
+
+// The row of a case that has no baseline.
+CaseResult WithoutBaseline(const CaseWork& work, int repeat) {
+  CaseResult result;
+  result.case_id = work.dataset_case.case_id;
+  result.group = work.dataset_case.group;
+  const auto sequence = work.dataset_case.extra.find("sequence");
+  if (sequence != work.dataset_case.extra.end()) {
+    result.sequence = sequence->second;
+  }
+  result.map_id = work.map_id;
+  result.repeat = repeat;
+  result.kind = AttemptKind::kNoBaseline;
+  result.oracle_cost = work.oracle_cost;
+  return result;
+}
+
+struct Tried {
+  CaseResult result;
+  std::string model;
+};
+
+Tried TryCase(const CaseWork& work, const MethodInfo& info, Method& method,
+              int repeat) {
+  if (!work.baseline.found()) return {WithoutBaseline(work, repeat), ""};
+  const MethodInput input{work.dataset_case, work.map, work.map_id,
+                          work.baseline, repeat};
+  Attempt attempt = method.Try(input);
+  const Stopwatch watch;
+  CaseResult result = ScoreAttempt(input, info, work.oracle_cost, attempt);
+  result.t_det += watch.Seconds();
+  result.t_prep += work.t_map;
+  if (info.uses_baseline) result.t_det += work.t_baseline;
+  return {std::move(result), std::move(attempt.model)};
+}
+
+// Runs what is left of the cases, several at a time.
+class Runner {
+ public:
+  Runner(const Dataset& dataset, const RunOptions& options,
+         std::vector<OpenRun>& runs)
+      : dataset_(dataset), options_(options), runs_(runs) {
+    for (std::size_t i = 0; i < dataset.cases.size(); ++i) {
+      place_of_.emplace(dataset.cases[i].case_id, i);
+    }
+  }
+
+  Status Run() {
+    const std::vector<std::size_t> left = CasesLeft();
+    const auto total = static_cast<std::int64_t>(NumOfShard());
+    const auto count = static_cast<std::int64_t>(left.size());
+    Progress progress("run", total, total - count);
+    ParallelFor(count, options_.jobs, [&](std::int64_t i) {
+      if (!failed()) RunCase(left[static_cast<std::size_t>(i)]);
+      progress.Advance();
+    });
+    if (failure_) return *failure_;
+    return Done{};
+  }
+
+ private:
+  // Methods belong to the thread that made them.
+  using Methods = std::vector<std::unique_ptr<Method>>;
+
+  bool InShard(std::size_t index) const {
+    const auto count = static_cast<std::size_t>(options_.shard.count);
+    return index % count + 1 == static_cast<std::size_t>(options_.shard.index);
+  }
+
+  std::size_t NumOfShard() const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < options_.cases.size(); ++i) n += InShard(i);
+    return n;
+  }
+
+  bool IsDone(const OpenRun& run, std::size_t index) const {
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+      if (!run.results->IsDone(index, repeat)) return false;
+    }
+    return true;
+  }
+
+  std::vector<std::size_t> CasesLeft() const {
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < options_.cases.size(); ++i) {
+      const bool done =
+          std::all_of(runs_.begin(), runs_.end(), [&](const OpenRun& run) {
+            return IsDone(run, i);
+          });
+      if (InShard(i) && !done) left.push_back(i);
+    }
+    return left;
+  }
+
+  void RunCase(std::size_t index) {
+    const DatasetCase& c = dataset_.cases[place_of_.at(options_.cases[index])];
+    Result<CaseWork> work = BeginCase(dataset_, c, options_);
+    if (!work.ok()) return Fail(work.error());
+    Result<Methods> methods = TakeMethods();
+    if (!methods.ok()) return Fail(methods.error());
+    for (std::size_t m = 0; m < runs_.size(); ++m) {
+      for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+        if (runs_[m].results->IsDone(index, repeat)) continue;
+        Keep(runs_[m],
+             TryCase(*work, runs_[m].run->choice.info, *(*methods)[m], repeat));
+      }
+    }
+    const std::scoped_lock lock(mutex_);
+    idle_.push_back(*std::move(methods));
+  }
+
+  void Keep(OpenRun& run, const Tried& tried) {
+    const Status written = run.results->Append(tried.result);
+    if (!written.ok()) return Fail(written.error());
+    if (tried.model.empty()) return;
+    const std::scoped_lock lock(mutex_);
+    run.models.insert(tried.model);
+  }
+
+  Result<Methods> TakeMethods() {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (!idle_.empty()) {
+        Methods methods = std::move(idle_.back());
+        idle_.pop_back();
+        return methods;
+      }
+    }
+    Methods methods;
+    for (const OpenRun& run : runs_) {
+      auto method = run.run->choice.make();
+      if (!method.ok()) return method.error();
+      methods.push_back(*std::move(method));
+    }
+    return methods;
+  }
+
+  bool failed() {
+    const std::scoped_lock lock(mutex_);
+    return failure_.has_value();
+  }
+
+  void Fail(const Error& error) {
+    const std::scoped_lock lock(mutex_);
+    if (!failure_) failure_ = error;
+  }
+
+  const Dataset& dataset_;
+  const RunOptions& options_;
+  std::vector<OpenRun>& runs_;
+  std::map<std::string, std::size_t> place_of_;
+  std::mutex mutex_;
+  std::vector<Methods> idle_;
+  std::optional<Error> failure_;
+};
+
+Status Finish(OpenRun& open) {
+  const Status sorted = open.results->Finish();
+  if (!sorted.ok()) return sorted.error();
+  open.description.finished = UtcNow();
+  open.description.models = {open.models.begin(), open.models.end()};
+  return WriteRunDescription(open.description, DescriptionPath(*open.run));
+}
+
+}  // namespace
+
+std::vector<std::string> FirstOfEachGroup(const Dataset& dataset, int n) {
+  std::map<std::string, int> taken;
+  std::vector<std::string> ids;
+  for (const DatasetCase& c : dataset.cases) {
+    if (taken[c.group]++ < n) ids.push_back(c.case_id);
+  }
+  return ids;
+}
+
+Result<std::string> DatasetDigest(const Dataset& dataset) {
+  if (!dataset.digest.empty()) return dataset.digest;
+  const Result<std::string> cases = ReadWholeFile(
+      (fs::path(dataset.folder) / "cases.csv").string(), kMaxTableBytes);
+  if (!cases.ok()) return cases.error();
+  return "cases.csv:" + advisor::Sha256Hex(*cases);
+}
+
+Status RunMethods(const Dataset& dataset, const RunOptions& options,
+                  const std::vector<MethodRun>& runs, const RunOrigin& origin) {
+  RunOptions complete = options;
+  if (complete.cases.empty()) {
+    for (const DatasetCase& c : dataset.cases) {
+      complete.cases.push_back(c.case_id);
+    }
+  }
+  const Result<std::string> digest = DatasetDigest(dataset);
+  if (!digest.ok()) return digest.error();
+  std::vector<OpenRun> open;
+  for (const MethodRun& run : runs) {
+    Result<OpenRun> opened = Open(
+        run, complete, DescribeRun(dataset, complete, run, origin, *digest));
+    if (!opened.ok()) return opened.error();
+    open.push_back(*std::move(opened));
+  }
+  const Status ran = Runner(dataset, complete, open).Run();
+  if (!ran.ok()) return ran.error();
+  for (OpenRun& run : open) {
+    const Status finished = Finish(run);
+    if (!finished.ok()) return finished.error();
+  }
+  return Done{};
+}
+
+}  // namespace terra::benchmark

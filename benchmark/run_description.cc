@@ -1,0 +1,200 @@
+#include "benchmark/run_description.h"
+
+#include <array>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+#include <sys/utsname.h>
+
+#include "advisor/encoding.h"
+#include "benchmark/parallel.h"
+#include "terrain/files/whole_file.h"
+
+namespace terra::benchmark {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxRunJsonBytes = std::size_t{1} << 20;
+
+std::string ProcessorName() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown processor";
+}
+
+std::string MachineText() {
+  utsname system{};
+  ::uname(&system);
+  return ProcessorName() + ", " +
+         std::to_string(std::thread::hardware_concurrency()) + " cores, " +
+         system.sysname + " " + system.release;
+}
+
+std::string CaseListDigest(const std::vector<std::string>& ids) {
+  std::string text;
+  for (const std::string& id : ids) text += id + "\n";
+  return advisor::Sha256Hex(text);
+}
+
+// What decides the figures.
+ordered_json ConfigurationJson(const RunDescription& d) {
+  return {{"method", d.method},
+          {"backend", d.backend},
+          {"title", d.title},
+          {"fallback", d.rule.fallback},
+          {"every_case_attempts", d.rule.every_case_attempts},
+          {"asks_model", d.asks_model},
+          {"simulated", d.simulated},
+          {"dataset",
+           {{"name", d.dataset_name},
+            {"version", d.dataset_version},
+            {"digest", d.dataset_digest}}},
+          {"case_list_digest", d.case_list_digest},
+          {"cases", d.num_cases},
+          {"stride", d.stride},
+          {"joints", d.joints},
+          {"cost_model",
+           {{"corner_cutting", d.corner_cutting},
+            {"clearance_cells", d.clearance_cells}}},
+          {"repeats", d.repeats},
+          {"settings", ordered_json::parse(d.settings_json)}};
+}
+
+void ReadConfiguration(const ordered_json& c, RunDescription& d) {
+  c.at("method").get_to(d.method);
+  c.at("backend").get_to(d.backend);
+  c.at("title").get_to(d.title);
+  c.at("fallback").get_to(d.rule.fallback);
+  c.at("every_case_attempts").get_to(d.rule.every_case_attempts);
+  c.at("asks_model").get_to(d.asks_model);
+  c.at("simulated").get_to(d.simulated);
+  c.at("dataset").at("name").get_to(d.dataset_name);
+  c.at("dataset").at("version").get_to(d.dataset_version);
+  c.at("dataset").at("digest").get_to(d.dataset_digest);
+  c.at("case_list_digest").get_to(d.case_list_digest);
+  c.at("cases").get_to(d.num_cases);
+  c.at("stride").get_to(d.stride);
+  c.at("joints").get_to(d.joints);
+  c.at("cost_model").at("corner_cutting").get_to(d.corner_cutting);
+  c.at("cost_model").at("clearance_cells").get_to(d.clearance_cells);
+  c.at("repeats").get_to(d.repeats);
+  d.settings_json = c.at("settings").dump();
+}
+
+void ReadOrigin(const ordered_json& j, RunDescription& d) {
+  j.at("shard").at("index").get_to(d.shard.index);
+  j.at("shard").at("count").get_to(d.shard.count);
+  j.at("jobs").get_to(d.jobs);
+  j.at("build").at("id").get_to(d.build_id);
+  j.at("command_line").get_to(d.command_line);
+  j.at("machine").get_to(d.machine);
+  j.at("started").get_to(d.started);
+  j.at("finished").get_to(d.finished);
+  j.at("models").get_to(d.models);
+}
+
+}  // namespace
+
+bool RunDescription::SameFigures(const RunDescription& other) const {
+  return ConfigurationJson(*this) == ConfigurationJson(other);
+}
+
+std::string JointsName(planner::JointRule joints) {
+  switch (joints) {
+    case planner::JointRule::kTwoStrides:
+      return "2r";
+    case planner::JointRule::kCell:
+      return "cell";
+    case planner::JointRule::kVisible:
+      return "visible";
+  }
+  return "";
+}
+
+std::string UtcNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
+                           const MethodRun& run, const RunOrigin& origin,
+                           const std::string& dataset_digest) {
+  RunDescription d;
+  const MethodInfo& info = run.choice.info;
+  d.method = info.method;
+  d.backend = info.backend;
+  d.title = info.title;
+  d.rule = info.rule;
+  d.asks_model = info.asks_model;
+  d.simulated = info.simulated;
+  d.dataset_name = dataset.name;
+  d.dataset_version = dataset.version;
+  d.dataset_digest = dataset_digest;
+  d.case_list_digest = CaseListDigest(options.cases);
+  d.num_cases = static_cast<std::int64_t>(options.cases.size());
+  d.stride = options.lattice.stride;
+  d.joints = JointsName(options.lattice.joints);
+  d.corner_cutting = options.cost_model.corner_cutting;
+  d.clearance_cells = options.cost_model.clearance_cells;
+  d.repeats = options.repeats;
+  d.settings_json = run.settings_json;
+  d.shard = options.shard;
+  d.jobs = NumJobs(options.jobs);
+  d.build_id = origin.build_id;
+  d.command_line = origin.command_line;
+  d.machine = MachineText();
+  d.started = {UtcNow()};
+  return d;
+}
+
+Status WriteRunDescription(const RunDescription& d, const std::string& path) {
+  const bool dirty = d.build_id.find("-dirty") != std::string::npos;
+  const ordered_json document = {
+      {"schema", RunDescription::kSchema},
+      {"configuration", ConfigurationJson(d)},
+      {"shard", {{"index", d.shard.index}, {"count", d.shard.count}}},
+      {"jobs", d.jobs},
+      {"build", {{"id", d.build_id}, {"dirty", dirty}}},
+      {"command_line", d.command_line},
+      {"machine", d.machine},
+      {"started", d.started},
+      {"finished", d.finished},
+      {"models", d.models}};
+  return WriteWholeFile(path, document.dump(2) + "\n");
+}
+
+Result<RunDescription> ReadRunDescription(const std::string& path) {
+  const Result<std::string> text = ReadWholeFile(path, kMaxRunJsonBytes);
+  if (!text.ok()) return text.error();
+  try {
+    const auto document = ordered_json::parse(*text);
+    const int schema = document.at("schema").get<int>();
+    if (schema != RunDescription::kSchema) {
+      return Error{ErrorCode::kUnsupported,
+                   path + ": schema " + std::to_string(schema) +
+                       ", this program reads " +
+                       std::to_string(RunDescription::kSchema)};
+    }
+    RunDescription d;
+    ReadConfiguration(document.at("configuration"), d);
+    ReadOrigin(document, d);
+    return d;
+  } catch (const nlohmann::json::exception& error) {
+    return Error{ErrorCode::kInvalid, path + ": " + error.what()};
+  }
+}
+
+}  // namespace terra::benchmark

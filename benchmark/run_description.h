@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "benchmark/metrics.h"
+#include "benchmark/run.h"
+#include "terrain/result.h"
+
+namespace terra::benchmark {
+
+/// What run.json says of a run, as tables and reports need it.
+struct RunDescription {
+  static constexpr int kSchema = 1;
+
+  // Decides the figures; the same when a run is resumed or merged.
+  std::string method;
+  std::string backend;
+  std::string title;
+  CountingRule rule;
+  bool asks_model = false;
+  std::string dataset_name;
+  std::string dataset_version;
+  std::string dataset_digest;
+  std::string case_list_digest;
+  std::int64_t num_cases = 0;  ///< Of the list, all shards together.
+  int stride = 0;
+  std::string joints;
+  bool corner_cutting = true;
+  int clearance_cells = 0;
+  int repeats = 1;
+  std::string settings_json;  ///< Model, prompt, switches; an object.
+  /// Answers came from a simulation or scripted server, no real model.
+  bool simulated = false;
+
+  // How this part of it came about.
+  Shard shard;
+  int jobs = 1;
+  std::string build_id;
+  std::string command_line;
+  std::string machine;
+  std::vector<std::string> started;  ///< UTC; one per start.
+  std::string finished;              ///< UTC; empty while it runs.
+  std::vector<std::string> models;   ///< As the replies named them.
+
+  /// Throws away how it came about, for comparing.
+  bool SameFigures(const RunDescription& other) const;
+};
+
+RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
+                           const MethodRun& run, const RunOrigin& origin,
+                           const std::string& dataset_digest);
+
+Status WriteRunDescription(const RunDescription& description,
+                           const std::string& path);
+/// Errors: name the file; another schema.
+Result<RunDescription> ReadRunDescription(const std::string& path);
+
+/// "2r", "cell" or "visible".
+std::string JointsName(planner::JointRule joints);
+
+/// The time now in UTC, as "2026-01-31T12:00:00Z".
+std::string UtcNow();
+
+}  // namespace terra::benchmark

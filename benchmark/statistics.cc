@@ -1,0 +1,104 @@
+#include "benchmark/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "benchmark/integer_random.h"
+#include "terrain/require.h"
+
+namespace terra::benchmark {
+namespace {
+
+constexpr double kZ95 = 1.959963984540054;  // Normal quantile of 0.975.
+
+// The interval between the 2.5 % and 97.5 % quantiles, by linear interpolation.
+std::pair<double, double> CentralInterval(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    const double part = place - static_cast<double>(below);
+    return values[below] + part * (values[above] - values[below]);
+  };
+  return {at(0.025), at(0.975)};
+}
+
+}  // namespace
+
+Estimate WilsonRate(std::int64_t hits, std::int64_t n) {
+  TERRA_REQUIRE(0 <= hits && hits <= n && n > 0);
+  const auto total = static_cast<double>(n);
+  const double p = static_cast<double>(hits) / total;
+  const double z2 = kZ95 * kZ95;
+  const double scale = 1 + z2 / total;
+  const double middle = (p + z2 / (2 * total)) / scale;
+  const double half =
+      kZ95 * std::sqrt(p * (1 - p) / total + z2 / (4 * total * total)) / scale;
+  // At 0 and n the bound is exactly 0 or 1, but for rounding.
+  return {p, hits == 0 ? 0 : middle - half, hits == n ? 1 : middle + half};
+}
+
+Estimate BootstrapMean(std::span<const Cluster> clusters) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for (const Cluster& c : clusters) {
+    sum += c.sum;
+    count += c.count;
+  }
+  TERRA_REQUIRE(count > 0);
+  IntegerRandom random(kBootstrapSeed);
+  const auto last = static_cast<int>(clusters.size()) - 1;
+  std::vector<double> means;
+  means.reserve(kBootstrapResamples);
+  for (int i = 0; i < kBootstrapResamples; ++i) {
+    double drawn_sum = 0;
+    std::int64_t drawn_count = 0;
+    for (int k = 0; k <= last; ++k) {
+      const Cluster& c = clusters[static_cast<std::size_t>(random.In(0, last))];
+      drawn_sum += c.sum;
+      drawn_count += c.count;
+    }
+    if (drawn_count > 0) {
+      means.push_back(drawn_sum / static_cast<double>(drawn_count));
+    }
+  }
+  const double mean = sum / static_cast<double>(count);
+  const auto [low, high] = CentralInterval(std::move(means));
+  return {mean, low, high};
+}
+
+double McNemarExact(std::int64_t b, std::int64_t c) {
+  TERRA_REQUIRE(b >= 0 && c >= 0);
+  const auto n = static_cast<double>(b + c);
+  double tail = 0;
+  for (std::int64_t i = 0; i <= std::min(b, c); ++i) {
+    const auto k = static_cast<double>(i);
+    tail += std::exp(std::lgamma(n + 1) - std::lgamma(k + 1) -
+                     std::lgamma(n - k + 1) - n * std::log(2.0));
+  }
+  return std::min(1.0, 2 * tail);
+}
+
+double NearestRank(std::vector<double> values, double percent) {
+  TERRA_REQUIRE(!values.empty() && percent > 0 && percent <= 100);
+  const auto n = static_cast<double>(values.size());
+  // A hair off, so that 95 % of 20 is rank 19 whatever the rounding.
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(percent / 100 * n - 1e-9));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(
+                                          std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+double Median(std::vector<double> values) {
+  TERRA_REQUIRE(!values.empty());
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half]
+                                : (values[half - 1] + values[half]) / 2;
+}
+
+}  // namespace terra::benchmark

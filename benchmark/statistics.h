@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace terra::benchmark {
+
+/// A figure with its 95 % interval.
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// A rate with the Wilson score interval (Wilson 1927). Pre: 0 <= hits <= n,
+/// n > 0.
+Estimate WilsonRate(std::int64_t hits, std::int64_t n);
+
+/// Terms of a mean that belong together: cases of one sequence, or one case.
+struct Cluster {
+  double sum = 0;
+  std::int64_t count = 0;
+};
+
+inline constexpr int kBootstrapResamples = 10'000;
+inline constexpr std::uint64_t kBootstrapSeed = 20'260'101;
+
+/// A mean (all sums over all counts) with the percentile bootstrap interval
+/// over clusters (Efron 1979). Deterministic. Resamples without a term are left
+/// out. Pre: at least one count > 0.
+Estimate BootstrapMean(std::span<const Cluster> clusters);
+
+/// Exact two-sided McNemar test (McNemar 1947): the chance, with a fair coin,
+/// of a split at least as uneven as b to c.
+double McNemarExact(std::int64_t b, std::int64_t c);
+
+/// Nearest-rank percentile (the smallest value with at least that share at or
+/// below it). Pre: not empty, 0 < percent <= 100.
+double NearestRank(std::vector<double> values, double percent);
+
+/// The usual median. Pre: not empty.
+double Median(std::vector<double> values);
+
+}  // namespace terra::benchmark

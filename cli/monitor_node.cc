@@ -1,0 +1,176 @@
+#include "cli/monitor_node.h"
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+
+#include "verifier/verify.h"
+
+namespace terra::cli {
+namespace {
+
+using terra_msg::deployed_t;
+using terra_msg::status_t;
+using terra_msg::verdict_t;
+
+// Names come from the bus: a flood of made-up ones must not fill the memory or
+// the screen.
+constexpr std::size_t kMaxProcesses = 64;
+constexpr std::size_t kMaxVerdicts = 8;
+// Three heartbeats missed: gone or stuck.
+constexpr bus::Duration kSilent = std::chrono::seconds(3);
+// A process that has been silent so long is no longer listed.
+constexpr bus::Duration kForgotten = std::chrono::minutes(2);
+
+[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
+  std::array<char, 512> buffer{};
+  std::va_list values;
+  va_start(values, format);
+  std::vsnprintf(buffer.data(), buffer.size(), format, values);
+  va_end(values);
+  return buffer.data();
+}
+
+// Control characters of a stranger's text must not reach the terminal.
+std::string Printable(std::string text, std::size_t longest) {
+  if (text.size() > longest) text.resize(longest);
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text;
+}
+
+const char* ModeName(std::int8_t mode) {
+  switch (mode) {
+    case deployed_t::MODE_BASELINE:
+      return "baseline";
+    case deployed_t::MODE_CANDIDATE:
+      return "candidate";
+    case deployed_t::MODE_HOLD:
+      return "hold: no valid route";
+    default:
+      return "none";
+  }
+}
+
+double Seconds(bus::Duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+MonitorNode::MonitorNode(bus::Duration duration, Show show)
+    : duration_(duration), show_(std::move(show)) {
+  Listen<status_t>([this](const auto& message, bus::Time now) {
+    OnStatus(message, now);
+  });
+  Listen<verdict_t>([this](const auto& message, bus::Time) {
+    OnVerdict(message);
+  });
+  Listen<deployed_t>([this](const auto& message, bus::Time now) {
+    deployed_ = message;
+    deployed_at_ = now;
+  });
+  Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time) {
+    map_ = message;
+  });
+}
+
+void MonitorNode::OnStatus(const status_t& message, bus::Time now) {
+  const std::string key = message.status_name + "@" + message.host;
+  if (processes_.size() >= kMaxProcesses && !processes_.contains(key)) return;
+  processes_[key] = {message, now};
+}
+
+void MonitorNode::OnVerdict(const verdict_t& message) {
+  verdicts_.push_front(message);
+  if (verdicts_.size() > kMaxVerdicts) verdicts_.pop_back();
+}
+
+bus::Time MonitorNode::Advance(bus::Time now) {
+  if (!started_) {
+    started_ = true;
+    if (duration_ < bus::kNever - now) end_ = now + duration_;
+    refresh_.Postpone(now);  // One round of heartbeats first.
+  }
+  std::erase_if(processes_, [now](const auto& entry) {
+    return now - entry.second.heard_at > kForgotten;
+  });
+  done_ = now >= end_;
+  if (refresh_.Due(now) || done_) show_(View(now));
+  return std::min(refresh_.next(), end_);
+}
+
+std::string MonitorNode::View(bus::Time now) const {
+  return RouteLines(now) + VerdictLines() + ProcessLines(now);
+}
+
+std::string MonitorNode::RouteLines(bus::Time now) const {
+  std::string text = "map        ";
+  text +=
+      map_ ? Format("%d x %d, id %016llx, revision %lld\n", map_->width,
+                    map_->height, static_cast<unsigned long long>(map_->map_id),
+                    static_cast<long long>(map_->map_revision))
+           : "none heard; is terra-map running on this bus?\n";
+  if (!deployed_) {
+    return text + "deployed   nothing heard; is terra-verifier running?\n";
+  }
+  const double saving = deployed_->baseline_cost - deployed_->deployed_cost;
+  text += Format("request    %016llx, (%d, %d) to (%d, %d)\n",
+                 static_cast<unsigned long long>(deployed_->request_id),
+                 deployed_->start_x, deployed_->start_y, deployed_->goal_x,
+                 deployed_->goal_y);
+  text +=
+      Format("deployed   %s%s%s, route %lld, heard %.1f s ago\n",
+             ModeName(deployed_->mode), deployed_->source.empty() ? "" : " of ",
+             Printable(deployed_->source, 63).c_str(),
+             static_cast<long long>(deployed_->route_seq),
+             Seconds(now - deployed_at_));
+  if (deployed_->mode == deployed_t::MODE_BASELINE ||
+      deployed_->mode == deployed_t::MODE_CANDIDATE) {
+    text += Format("cost       %.3f; baseline %.3f, saving %.2f %%\n",
+                   deployed_->deployed_cost, deployed_->baseline_cost,
+                   deployed_->baseline_cost > 0
+                       ? 100 * saving / deployed_->baseline_cost
+                       : 0.0);
+  }
+  return text;
+}
+
+std::string MonitorNode::VerdictLines() const {
+  std::string text = "\nverdicts, newest first\n";
+  if (verdicts_.empty()) text += "  none yet\n";
+  for (const verdict_t& verdict : verdicts_) {
+    const auto code = static_cast<verifier::Code>(verdict.code);
+    text += Format("  %-20s %-16s cost %.3f against %.3f, judged in %lld us\n",
+                   Printable(verdict.subject == verdict_t::SUBJECT_BASELINE
+                                 ? "(the baseline)"
+                                 : verdict.advisor,
+                             20)
+                       .c_str(),
+                   std::string(verifier::CodeName(code)).c_str(),
+                   verdict.candidate_cost, verdict.cost_to_beat,
+                   static_cast<long long>(verdict.t_det_us));
+  }
+  return text;
+}
+
+std::string MonitorNode::ProcessLines(bus::Time now) const {
+  std::string text = "\nprocesses\n";
+  if (processes_.empty()) text += "  none heard\n";
+  for (const auto& [key, process] : processes_) {
+    const status_t& status = process.status;
+    const bus::Duration age = now - process.heard_at;
+    text +=
+        Format("  %-20s %8d  %s\n", Printable(status.status_name, 20).c_str(),
+               status.pid,
+               age > kSilent ? Format("SILENT for %.0f s", Seconds(age)).c_str()
+                             : Printable(status.state, 60).c_str());
+    if (!status.last_error.empty()) {
+      text += "      last error: " + Printable(status.last_error, 160) + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace terra::cli

@@ -34,13 +34,14 @@ std::string KeyVariable(const std::string& backend) {
   return "ANTHROPIC_API_KEY";
 }
 
-// What would measure a row.
+// What would measure a row: `more` options, into a folder with this suffix.
 std::string Command(const std::string& method, const std::string& backend,
-                    const std::string& more = "") {
+                    const std::string& more = "",
+                    const std::string& suffix = "") {
   return "not measured; " + KeyVariable(backend) +
          "=... terra bench run --dataset DIR --method " + method +
          " --backend " + backend + more + " --out runs/" + method + "-" +
-         backend;
+         backend + suffix;
 }
 
 // Recordings name the provider that answered.
@@ -86,12 +87,14 @@ constexpr const char* kNotTheirMaps =
     "These are not the paper's maps: generated after its description and "
     "calibrated to its gap table.";
 
-void AddMissing(const std::vector<LoadedRun>& runs, Table& table) {
+void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
+                const std::string& more = "", const std::string& suffix = "") {
   TableBlock missing;
   missing.heading = "Not measured here";
   for (const PaperRow& row : kPaperMethods) {
     if (Measured(runs, row.method, row.backend)) continue;
-    missing.rows.push_back({row.title, Command(row.method, row.backend)});
+    missing.rows.push_back(
+        {row.title, Command(row.method, row.backend, more, suffix)});
   }
   if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
 }
@@ -255,13 +258,15 @@ Table AblationTable(const std::vector<LoadedRun>& runs) {
     const char* route_text;
     const char* rea;
     const char* switches;
+    const char* suffix;
   };
   constexpr Setting kSettings[] = {
-      {"full advisor", "true", "true", "true", ""},
+      {"full advisor", "true", "true", "true", "", ""},
       {"without overlay and route text", "false", "false", "true",
-       " --no-overlay --no-route-text"},
-      {"without route text", "true", "false", "true", " --no-route-text"},
-      {"without REA", "true", "true", "false", " --no-rea"}};
+       " --no-overlay --no-route-text", "-no-baseline"},
+      {"without route text", "true", "false", "true", " --no-route-text",
+       "-no-route-text"},
+      {"without REA", "true", "true", "false", " --no-rea", "-no-rea"}};
   TableBlock measured;
   measured.heading = "Measured here";
   TableBlock missing;
@@ -287,7 +292,8 @@ Table AblationTable(const std::vector<LoadedRun>& runs) {
     }
     if (!found) {
       missing.rows.push_back(
-          {setting.name, Command("advisor", "openai", setting.switches)});
+          {setting.name,
+           Command("advisor", "openai", setting.switches, setting.suffix)});
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
@@ -330,7 +336,7 @@ Table RugdTable(const std::vector<LoadedRun>& runs) {
          "--out runs/rugd-shortcut"});
   }
   table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table);
+  AddMissing(runs, table, "", "-rugd");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Intervals of means: bootstrap over sequences, not frames.",
@@ -366,7 +372,7 @@ Table LatencyTable(const std::vector<LoadedRun>& runs) {
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table);
+  AddMissing(runs, table, " --cases 50", "-latency");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Medians of each stage, p95 by nearest rank; only runs with --jobs 1.",
@@ -417,7 +423,8 @@ Table NoiseTable(const std::vector<LoadedRun>& runs) {
       missing.rows.push_back(
           {std::string("LLM-Advisor (gpt-5.5), noise ") + noise + " %",
            Command("advisor", "openai",
-                   std::string(" --cases 50 --noise ") + noise)});
+                   std::string(" --cases 50 --noise ") + noise,
+                   std::string("-noise") + noise)});
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));

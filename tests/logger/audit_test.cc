@@ -217,30 +217,6 @@ TEST(Audit, TheOrderOfTheLogDoesNotMatter) {
   EXPECT_TRUE(audit.clean()) << Text(audit);
 }
 
-TEST(Audit, APartThatBeginsWithTheStateInForceIsAuditedAlone) {
-  const Messages messages = EventfulRun();
-  for (std::size_t cut = 1; cut < messages.size(); cut += 7) {
-    StateSnapshot state;
-    Messages part;
-    for (std::size_t i = 0; i < cut; ++i) {
-      state.Take(messages[i].channel, {0, "", messages[i].bytes});
-    }
-    state.Visit([&part, &messages](const HeardEvent& event) {
-      for (const bus::RawMessage& message : messages) {
-        if (message.bytes == event.data) {
-          part.push_back(message);
-          return;
-        }
-      }
-    });
-    part.insert(part.end(), messages.begin() + static_cast<std::ptrdiff_t>(cut),
-                messages.end());
-    const Audit audit = AuditOf(part);
-    EXPECT_TRUE(audit.clean()) << "cut at " << cut << ": " << Text(audit);
-    EXPECT_LE(audit.anchors, 1);
-  }
-}
-
 TEST(Audit, AMissingInputIsNamed) {
   Messages messages = EventfulRun();
   std::erase_if(messages, [](const bus::RawMessage& message) {
@@ -276,87 +252,6 @@ TEST(Audit, AMissingDecisionIsAGap) {
   const Audit audit = AuditOf(messages);
   ASSERT_FALSE(audit.clean());
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kGap);
-}
-
-// What a changed message may say differently without any decision depending on
-// it: by what the gate reads (verifier/gate_messages.h).
-template <typename T>
-bool SameEssence(const bus::RawMessage& one, const bus::RawMessage& other) {
-  const auto a = bus::Decode<T>(one.bytes);
-  const auto b = bus::Decode<T>(other.bytes);
-  return a.ok() && b.ok() && Essence(*a) == Essence(*b);
-}
-
-bool IsIrrelevant(const bus::RawMessage& was, const bus::RawMessage& is) {
-  switch (was.channel) {
-    case bus::Channel::kMapHeader:
-    case bus::Channel::kMapTile:
-      // Everything that a route's cost depends on is in map_id, and the audit
-      // found maps with the ids that the decisions name.
-      return true;
-    case bus::Channel::kMapRequest:
-    case bus::Channel::kStatus:
-    case bus::Channel::kConfig:
-      return true;  // never reaches the gate
-    case bus::Channel::kPlanRequest: {
-      // The request is known from the planner too, with start and goal; the
-      // rest of the message the gate does not read.
-      const auto a = bus::Decode<plan_request_t>(was.bytes);
-      const auto b = bus::Decode<plan_request_t>(is.bytes);
-      return !b.ok() || a->request_id != b->request_id ||
-             a->action != b->action ||
-             (a->start_x == b->start_x && a->start_y == b->start_y &&
-              a->goal_x == b->goal_x && a->goal_y == b->goal_y);
-    }
-    case bus::Channel::kBaseline:
-      return SameEssence<baseline_t>(was, is);
-    case bus::Channel::kAdvice:
-      return SameEssence<advice_t>(was, is);
-    case bus::Channel::kVerdict:
-      return SameEssence<terra_msg::verdict_t>(was, is);
-    case bus::Channel::kDeployed:
-      return SameEssence<deployed_t>(was, is);
-    default:
-      return false;
-  }
-}
-
-// Each thing is said once, so that no repetition stands in for a changed one.
-Messages WithoutRepetitions(const Messages& messages) {
-  Messages once;
-  std::vector<Bytes> seen;
-  for (const bus::RawMessage& message : messages) {
-    Bytes essence = message.bytes;
-    std::fill_n(essence.begin() + 8, 24, std::uint8_t{0});  // the envelope
-    if (std::find(seen.begin(), seen.end(), essence) != seen.end()) continue;
-    seen.push_back(essence);
-    once.push_back(message);
-  }
-  return once;
-}
-
-TEST(Audit, AChangedByteIsNoticedOrNothingDependsOnIt) {
-  const Messages messages = WithoutRepetitions(EventfulRun());
-  ASSERT_TRUE(AuditOf(messages).clean()) << Text(AuditOf(messages));
-  testing::Random random(20);
-  int noticed = 0;
-  for (int round = 0; round < 1'500; ++round) {
-    Messages changed = messages;
-    const auto which = static_cast<std::size_t>(
-        random.Int(0, static_cast<int>(changed.size()) - 1));
-    Bytes& bytes = changed[which].bytes;
-    const auto at = static_cast<std::size_t>(
-        random.Int(0, static_cast<int>(bytes.size()) - 1));
-    bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1 << random.Int(0, 7)));
-    if (!AuditOf(changed).clean()) {
-      ++noticed;
-      continue;
-    }
-    EXPECT_TRUE(IsIrrelevant(messages[which], changed[which]))
-        << bus::BaseName(messages[which].channel) << " byte " << at
-        << " of message " << which;
-  }
-  EXPECT_GT(noticed, 500);
 }
 
 }  // namespace

@@ -43,13 +43,12 @@ class LoggerProcess : public ::testing::Test {
   LoggerProcess() : peer_(buses_.url()) {}
 
   std::vector<std::string> Command() const {
-    return {ProgramPath("terra-logger"),
-            "--lcm-url",
-            buses_.url(),
-            "--advice-url",
-            buses_.advice_url(),
-            "--out",
-            folder_.Path("log")};
+    return CommandInto(folder_.Path("log"));
+  }
+  std::vector<std::string> CommandInto(const std::string& folder) const {
+    return {
+        ProgramPath("terra-logger"), "--lcm-url", buses_.url(), "--advice-url",
+        buses_.advice_url(),         "--out",     folder};
   }
 
   // Waits for a heartbeat of the logger that the predicate likes.
@@ -142,9 +141,9 @@ TEST_F(LoggerProcess, WhatItAcknowledgedSurvivesAKillAtAnyMoment) {
 TEST_F(LoggerProcess, LcmsOwnPlayerPlaysTheFile) {
   ChildProcess logger(Command());
   ASSERT_TRUE(WaitUntilReady());
-  SendPoses(200);
+  SendPoses(100);
   ASSERT_TRUE(Heartbeat([](const status_t& status) {
-    return CounterOf(status, "acknowledged") >= 200;
+    return CounterOf(status, "acknowledged") >= 100;
   }));
   ASSERT_EQ(logger.Terminate(), 0);
   BusPeer listener(buses_.advice_url());  // another port
@@ -152,9 +151,9 @@ TEST_F(LoggerProcess, LcmsOwnPlayerPlaysTheFile) {
                        "TERRA_POSE", Logs().at(0)});
   ASSERT_EQ(player.WaitForExit(std::chrono::seconds(30)), 0) << player.output();
   EXPECT_TRUE(listener.WaitFor<pose_t>([](const pose_t& pose) {
-    return pose.pose_x == 199;
+    return pose.pose_x == 99;
   }));
-  EXPECT_EQ(listener.Heard<pose_t>().size(), 200U);
+  EXPECT_EQ(listener.Heard<pose_t>().size(), 100U);
 }
 
 TEST_F(LoggerProcess, AFileLimitIsReportedLikeAFullDisk) {
@@ -185,9 +184,9 @@ TEST_F(LoggerProcess, AFullDiskIsReportedOnTheBusAndInTheExitCode) {
     GTEST_SKIP() << "no permission to mount a small disk";
   }
   std::string start = make_disk + " && exec";
-  for (const std::string& word : Command()) start += " '" + word + "'";
-  start += " --out " + mount + "/log";
-  // The last --out counts.
+  for (const std::string& word : CommandInto(mount + "/log")) {
+    start += " '" + word + "'";
+  }
   ChildProcess logger({"unshare", "-m", "sh", "-c", start});
   ASSERT_TRUE(WaitUntilReady()) << logger.output();
   SendPoses(2'000);
@@ -202,9 +201,8 @@ TEST_F(LoggerProcess, AFullDiskIsReportedOnTheBusAndInTheExitCode) {
 TEST_F(LoggerProcess, AFolderWithoutPermissionEndsItWithTheReason) {
   if (geteuid() == 0) {
     // Root may write anywhere but into /proc.
-    std::vector<std::string> command = Command();
-    command.back() = "/proc/terra-log";
-    const testing::RunResult result = testing::RunToEnd(command);
+    const testing::RunResult result =
+        testing::RunToEnd(CommandInto("/proc/terra-log"));
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_NE(result.output.find("/proc/terra-log"), std::string::npos);
     return;
@@ -213,9 +211,7 @@ TEST_F(LoggerProcess, AFolderWithoutPermissionEndsItWithTheReason) {
   std::filesystem::create_directory(folder);
   std::filesystem::permissions(folder, std::filesystem::perms::owner_read |
                                            std::filesystem::perms::owner_exec);
-  std::vector<std::string> command = Command();
-  command.back() = folder;
-  const testing::RunResult result = testing::RunToEnd(command);
+  const testing::RunResult result = testing::RunToEnd(CommandInto(folder));
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find(folder), std::string::npos);
 }

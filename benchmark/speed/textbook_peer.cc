@@ -30,7 +30,15 @@ class TextbookPeer : public Peer {
       const int node = open.top().second;
       open.pop();
       const auto n = static_cast<std::size_t>(node);
-      if (node == goal) return distance[n];
+      if (node == goal) {
+        path_.clear();
+        for (int at = goal; at != -1;) {
+          path_.push_back(CellOf(at));
+          at = predecessor[static_cast<std::size_t>(at)];
+        }
+        std::reverse(path_.begin(), path_.end());
+        return distance[n];
+      }
       if (closed[n]) continue;
       closed[n] = true;
       const Cell cell = CellOf(node);
@@ -66,6 +74,7 @@ class TextbookPeer : public Peer {
   }
 
   const TerrainMap& map_;
+  CellPath path_;  // What the caller would drive.
 };
 
 }  // namespace

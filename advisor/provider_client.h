@@ -41,6 +41,7 @@ class ProviderClient : public LlmClient {
   TryOutcome Try(const HttpRequest& request, LlmReply& reply,
                  std::stop_token stop);
   std::string WithoutKey(std::string text) const;
+  std::string BodyWithoutKey(std::string body) const;
 
   std::unique_ptr<WireFormat> format_;
   ProviderOptions options_;

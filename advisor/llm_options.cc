@@ -46,6 +46,10 @@ void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
                  "Address of a server that speaks the backend's form; https, "
                  "or http on this machine")
       ->group(group);
+  app.add_flag("--real-model", provider.real_model,
+               "The server on this machine runs a real model: do not mark "
+               "results SIMULATED")
+      ->group(group);
   app.add_option("--anthropic-version", settings.anthropic_version,
                  "anthropic: version header")
       ->capture_default_str()

@@ -90,9 +90,14 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   } else if (!format->key_optional()) {
     key = "none";  // A test server wants the header, not a secret.
   }
-  LlmIdentity identity{
-      provider, full.settings.model, SettingsText(*format, full.settings),
-      own_url && *endpoint != "loopback" ? "provider" : *endpoint};
+  std::string endpoint_class = *endpoint;
+  if (*endpoint != "loopback") {
+    if (own_url) endpoint_class = "provider";
+  } else if (full.real_model) {
+    endpoint_class = "loopback-model";
+  }
+  LlmIdentity identity{provider, full.settings.model,
+                       SettingsText(*format, full.settings), endpoint_class};
   return std::unique_ptr<LlmClient>(std::make_unique<ProviderClient>(
       std::move(format), std::move(full), std::move(identity), std::move(key)));
 }

@@ -326,6 +326,21 @@ TEST(ProviderClientTest, RealProvidersNeedAKey) {
   }
 }
 
+TEST(ProviderClientTest, AServerOnThisMachineIsNoRealModelUnlessSaid) {
+  ProviderOptions options;
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "loopback");
+  options.real_model = true;
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "loopback-model");
+  options.base_url = "https://example.org";
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "other");
+}
+
 TEST(ProviderClientTest, PlainHttpIsForThisMachineOnly) {
   EXPECT_EQ(CheckBaseUrl("http://127.0.0.1:80").value(), "loopback");
   EXPECT_EQ(CheckBaseUrl("http://localhost").value(), "loopback");

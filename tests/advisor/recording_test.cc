@@ -1,7 +1,6 @@
 // Recordings and the exchange of files, at the level of clients.
 #include "advisor/recording.h"
 
-#include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <thread>

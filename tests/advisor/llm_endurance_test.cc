@@ -84,9 +84,11 @@ TEST(LlmEndurance, TenThousandCallsLeaveNothingBehindAndGiveNothingAway) {
   const AdviceTask task{map,      77,  1, baseline.front(), baseline.back(),
                         baseline, cost};
   const std::vector<ScriptedReply> script = Script();
-  std::atomic<std::size_t> next{0};
+  // Not counted by requests: where a server closes a connection that was used
+  // before, the library sends the request again by itself.
+  std::atomic<std::size_t> current{0};
   ScriptedLlmServer server([&](const testing::SeenRequest&) {
-    return script[next++ % script.size()];
+    return script[current % script.size()];
   });
   LlmBackendOptions options;
   options.service.backend = "openai";
@@ -108,6 +110,7 @@ TEST(LlmEndurance, TenThousandCallsLeaveNothingBehindAndGiveNothingAway) {
       memory_kb = ResidentKb();
       files = OpenFiles();
     }
+    current = static_cast<std::size_t>(call);
     const AdviceAnswer answer = (*backend)->Advise(task, {});
     ++kinds[answer.kind];
     ASSERT_THAT(answer.error + answer.answer_text + answer.model,
@@ -117,7 +120,7 @@ TEST(LlmEndurance, TenThousandCallsLeaveNothingBehindAndGiveNothingAway) {
   EXPECT_NEAR(kinds[AnswerKind::kRetain], rounds, 1);
   EXPECT_NEAR(kinds[AnswerKind::kPropose], rounds, 1);
   EXPECT_NEAR(kinds[AnswerKind::kMalformed], 4 * rounds, 4);
-  EXPECT_EQ(server.request_count(), kCalls);
+  EXPECT_GE(server.request_count(), kCalls);
   EXPECT_LE(OpenFiles(), files + 4) << "connections of the server's own";
 #ifndef __SANITIZE_ADDRESS__  // It keeps what was freed, and finds leaks
                               // itself.

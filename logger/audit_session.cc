@@ -28,35 +28,12 @@ std::int64_t Sum(std::int64_t a, std::int64_t b) {
   return Difference(a, Difference(0, b));
 }
 
-std::int64_t NumberOf(const LogContents::Decided& decided) {
-  return std::visit(
-      [](const auto& one) {
-        return one.decision;
-      },
-      decided);
-}
-
 std::int64_t NumberOf(const verifier::Decision& decided) {
   return std::visit(
       [](const auto& one) {
         return one.decision;
       },
       decided);
-}
-
-std::string InWords(const LogContents::Decided& decided) {
-  if (const auto* verdict = std::get_if<verdict_t>(&decided)) {
-    return "VERDICT " +
-           std::string(verifier::CodeName(verifier::Code{verdict->code})) +
-           ", cost " + std::to_string(verdict->candidate_cost) + " against " +
-           std::to_string(verdict->cost_to_beat);
-  }
-  const auto& deployed = std::get<deployed_t>(decided);
-  return "DEPLOYED route " + std::to_string(deployed.route_seq) + " in mode " +
-         std::to_string(deployed.mode) + ", cause " +
-         std::to_string(deployed.cause) + ", cost " +
-         std::to_string(deployed.deployed_cost) + " against " +
-         std::to_string(deployed.baseline_cost);
 }
 
 }  // namespace
@@ -84,7 +61,7 @@ void SessionAudit::Take(Decisions::const_iterator at) {
   const std::int64_t decision = at->first;
   const Logged<Decided>& logged = at->second;
   if (logged.index < contents_.state_end) {
-    TakeState(logged);
+    TakeState(at);
   } else if (decision == 1) {
     gate_.emplace(options_);
     decision_offset_ = 0;
@@ -99,12 +76,18 @@ void SessionAudit::Take(Decisions::const_iterator at) {
   last_ = decision;
 }
 
-// The snapshot's DEPLOYED is the state to begin from, its VERDICT tells only
-// how many decisions there were: its inputs may be gone.
-void SessionAudit::TakeState(const Logged<Decided>& logged) {
+// The snapshot's DEPLOYED is the state to begin from. Its VERDICT tells how
+// many decisions there were, and may have led to the next DEPLOYED; that its
+// inputs are gone is no finding, since it stands in the part before.
+void SessionAudit::TakeState(Decisions::const_iterator at) {
   at_begin_ = false;
-  const auto* deployed = std::get_if<deployed_t>(&logged.message);
-  if (deployed != nullptr) BeginFrom(*deployed, logged.index);
+  if (const auto* deployed = std::get_if<deployed_t>(&at->second.message)) {
+    BeginFrom(*deployed, at->second.index);
+  } else if (gate_ &&
+             Hear(at, causes_.WaysTo(at->second, *gate_, route_seq_offset_))) {
+    Number(at->first);
+    gate_->decided().pop_front();
+  }
 }
 
 // Returns whether the last decision before this one is known, and reports a gap
@@ -115,7 +98,6 @@ bool SessionAudit::Follows(std::int64_t decision) {
   Fail(Finding::Kind::kGap, decision,
        "decisions after " + std::to_string(last_) + " to " +
            std::to_string(decision - 1) + " are not in the log");
-  gate_.reset();
   return false;
 }
 
@@ -157,36 +139,51 @@ void SessionAudit::BeginFrom(const deployed_t& deployed, std::int64_t index) {
 }
 
 void SessionAudit::Decide(Decisions::const_iterator at) {
+  const std::string said = "the log says " + InWords(at->second.message);
   if (gate_->decided().empty()) {
     const Ways ways = causes_.WaysTo(at->second, *gate_, route_seq_offset_);
-    bool fits = false;
-    for (std::size_t i = 0; i < ways.all.size() && !fits; ++i) {
-      // The last one is not only tried: it shows what differs.
-      const bool last = i + 1 == ways.all.size() && ways.missing.empty();
-      if (last) {
-        gate_->Hear(ways.all[i]);
-        fits = true;
-        break;
-      }
-      ReplayedGate trial = *gate_;
-      trial.Hear(ways.all[i]);
-      fits = Fits(trial, at);
-      if (fits) gate_ = std::move(trial);
+    if (!Hear(at, ways) && !ways.missing.empty()) {
+      return Fail(Finding::Kind::kMissingInput, at->first, ways.missing);
     }
-    if (!fits && !ways.missing.empty()) {
-      Fail(Finding::Kind::kMissingInput, at->first, ways.missing);
-      gate_.reset();
-      return;
+    // The last one shows what differs.
+    if (gate_->decided().empty() && !ways.all.empty()) {
+      gate_->Hear(ways.all.back());
     }
   }
   if (gate_->decided().empty()) {
-    Fail(Finding::Kind::kMismatch, at->first,
-         "the log says " + InWords(at->second.message) +
-             ", but from its inputs follows nothing");
-    gate_.reset();
-    return;
+    return Fail(Finding::Kind::kMismatch, at->first,
+                said + ", but from its inputs follows nothing");
   }
-  Compare(at->second.message);
+  at_begin_ = false;
+  Number(at->first);
+  const Decided made = MessageOf(gate_->decided().front(), *decision_offset_);
+  gate_->decided().pop_front();
+  if (Essence(made) != Essence(at->second.message)) {
+    return Fail(Finding::Kind::kMismatch, at->first,
+                said + ", but from its inputs follows " + InWords(made));
+  }
+  ++(std::holds_alternative<verdict_t>(made) ? audit_.verdicts
+                                             : audit_.deployed);
+}
+
+// Goes the first way from which the logged decision follows; returns false when
+// there is none.
+bool SessionAudit::Hear(Decisions::const_iterator at, const Ways& ways) {
+  for (const GateEvents& way : ways.all) {
+    ReplayedGate trial = *gate_;
+    trial.Hear(way);
+    if (Fits(trial, at)) {
+      gate_ = std::move(trial);
+      return true;
+    }
+  }
+  return false;
+}
+
+// The first decision tells how the log's numbers differ from this gate's.
+void SessionAudit::Number(std::int64_t decision) {
+  if (decision_offset_) return;
+  decision_offset_ = Difference(decision, NumberOf(gate_->decided().front()));
 }
 
 // Returns whether what a gate decided is what the log has from here on.
@@ -203,25 +200,6 @@ bool SessionAudit::Fits(const ReplayedGate& gate,
     ++at;
   }
   return true;
-}
-
-void SessionAudit::Compare(const Decided& logged) {
-  const verifier::Decision made = std::move(gate_->decided().front());
-  gate_->decided().pop_front();
-  if (!decision_offset_) {
-    decision_offset_ = Difference(NumberOf(logged), NumberOf(made));
-  }
-  at_begin_ = false;
-  const bool is_verdict = std::holds_alternative<verdict_t>(logged);
-  const Decided message = MessageOf(made, *decision_offset_);
-  if (Essence(message) == Essence(logged)) {
-    ++(is_verdict ? audit_.verdicts : audit_.deployed);
-    return;
-  }
-  Fail(Finding::Kind::kMismatch, NumberOf(logged),
-       "the log says " + InWords(logged) + ", but from its inputs follows " +
-           InWords(message));
-  gate_.reset();
 }
 
 // A decision of this audit's gate as the log would have it.
@@ -247,6 +225,7 @@ LogContents::Decided SessionAudit::MessageOf(
 void SessionAudit::Fail(Finding::Kind kind, std::int64_t decision,
                         std::string what) {
   lost_ = true;
+  gate_.reset();
   audit_.Add({kind, session_, decision, std::move(what)});
 }
 

@@ -26,13 +26,14 @@ class SessionAudit {
   using Decisions = LaterDecisions::Decisions;
 
   void Take(Decisions::const_iterator at);
-  void TakeState(const Logged<Decided>& logged);
+  void TakeState(Decisions::const_iterator at);
   bool Follows(std::int64_t decision);
   void TakeFirst(const Logged<Decided>& logged);
   void BeginFrom(const terra_msg::deployed_t& deployed, std::int64_t index);
   void Decide(Decisions::const_iterator at);
   bool Fits(const ReplayedGate& gate, Decisions::const_iterator at) const;
-  void Compare(const Decided& logged);
+  bool Hear(Decisions::const_iterator at, const Ways& ways);
+  void Number(std::int64_t decision);
   Decided MessageOf(const verifier::Decision& made,
                     std::int64_t decision_offset) const;
   void Fail(Finding::Kind kind, std::int64_t decision, std::string what);

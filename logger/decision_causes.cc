@@ -152,11 +152,10 @@ void DecisionCauses::WaysTo(const verdict_t& verdict, Ways& ways) {
           Difference(event.anchor.route_seq, route_seq_offset_);
     }
     const Step advice = GateEvents{event};
-    if (IsStale(verdict)) {
-      WaysToStale(verdict, advice, ways);
-    } else {
-      WaysToJudged(verdict, advice, ways);
-    }
+    // Advice that cannot be read gets that code whatever its key.
+    const bool any_key = verdict.code == verdict_t::CODE_MALFORMED_MESSAGE;
+    if (IsStale(verdict) || any_key) WaysToStale(verdict, advice, ways);
+    if (!IsStale(verdict)) WaysToJudged(verdict, advice, ways);
   }
 }
 
@@ -174,18 +173,21 @@ void DecisionCauses::WaysToBaselineVerdict(const verdict_t& verdict,
 void DecisionCauses::WaysToStale(const verdict_t& verdict, const Step& advice,
                                  Ways& ways) {
   Add({advice}, ways);
-  if (verdict.code == verdict_t::CODE_STALE_REQUEST) {
+  const bool any_key = verdict.code == verdict_t::CODE_MALFORMED_MESSAGE;
+  if (any_key || verdict.code == verdict_t::CODE_STALE_REQUEST) {
     // Cancelled before it was heard of.
     const auto cancel = contents_.cancels.find(verdict.request_id);
     if (cancel != contents_.cancels.end()) {
       Add({GateEvents{verifier::ToEvent(cancel->second.message)}, advice},
           ways);
     }
-  } else if (verdict.code == verdict_t::CODE_STALE_MAP) {
+  }
+  if (any_key || verdict.code == verdict_t::CODE_STALE_MAP) {
     if (verdict.map_id == gate_->map_id()) {
       Add({MapAfter(verdict.map_id, ways), advice}, ways);
     }
-  } else {
+  }
+  if (any_key || verdict.code == verdict_t::CODE_STALE_BASELINE) {
     WaysToStaleBaseline(verdict, advice, ways);
   }
 }
@@ -225,8 +227,6 @@ void DecisionCauses::WaysToJudged(const verdict_t& verdict, const Step& advice,
                                   Ways& ways) {
   Step state = GateEvents{};
   if (!HasCurrentKey(verdict)) {
-    // Advice that cannot be read gets this code whatever its key.
-    if (verdict.code == verdict_t::CODE_MALFORMED_MESSAGE) Add({advice}, ways);
     if (verdict.request_id != gate_->deployed().request_id) return;
     const std::int64_t digest = verdict.baseline_digest;
     const Step map = Map(verdict.map_id, ways);

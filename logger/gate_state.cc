@@ -114,6 +114,12 @@ bool TellsTheSame(verifier::Deployed state, const deployed_t& deployed) {
   return Essence(verifier::ToMessage(state)) == Essence(deployed);
 }
 
+Error Differs(const deployed_t& deployed, const verifier::Deployed& state) {
+  return Error{ErrorCode::kInvalid, "the log says " + InWords(deployed) +
+                                        ", but from its inputs follows " +
+                                        InWords(verifier::ToMessage(state))};
+}
+
 // No route: nothing asked, cancelled, or none found.
 ReplayedGate WithoutRoute(const deployed_t& deployed, const StateEvents& state,
                           const MapPtr& map, ReplayedGate gate) {
@@ -169,12 +175,10 @@ Result<ReplayedGate> GateInState(const deployed_t& deployed,
     return Error{ErrorCode::kNotFound, "the log does not hold all of map " +
                                            std::to_string(deployed.map_id)};
   }
-  const Error wrong = {ErrorCode::kInvalid,
-                       "route or costs are not what its inputs give"};
   if (deployed.baseline_digest == 0 || !map) {
     ReplayedGate gate = WithoutRoute(deployed, state, map, fresh);
     if (TellsTheSame(gate.deployed(), deployed)) return gate;
-    return wrong;
+    return Differs(deployed, gate.deployed());
   }
   const auto* found = contents.FindBaseline(
       deployed.baseline_digest,
@@ -197,7 +201,7 @@ Result<ReplayedGate> GateInState(const deployed_t& deployed,
   if (IsKeptCandidate(deployed, state, map, baseline, options.margin, kept)) {
     return kept;
   }
-  return wrong;
+  return Differs(deployed, gate.deployed());
 }
 
 }  // namespace terra::logger

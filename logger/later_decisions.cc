@@ -31,6 +31,20 @@ struct Overloaded : Cases... {
 template <typename... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
+void AddReplaced(const verdict_t& verdict, LaterDecisions::Replaced& replaced) {
+  // Advice that cannot be read gets that code whatever its key.
+  const bool any_key = verdict.code == verdict_t::CODE_MALFORMED_MESSAGE;
+  if (any_key || verdict.code == verdict_t::CODE_STALE_REQUEST) {
+    replaced.requests.insert(verdict.request_id);
+  }
+  if (any_key || verdict.code == verdict_t::CODE_STALE_MAP) {
+    replaced.maps.insert(verdict.map_id);
+  }
+  if (any_key || verdict.code == verdict_t::CODE_STALE_BASELINE) {
+    replaced.baselines.insert(verdict.baseline_digest);
+  }
+}
+
 }  // namespace
 
 std::int64_t LaterDecisions::PlannerOf(std::int64_t digest,
@@ -88,22 +102,14 @@ LaterDecisions::Replaced LaterDecisions::ReplacedBefore(
     std::int64_t decision) const {
   Replaced replaced;
   std::set<std::int64_t> in_force_later;
-  ForEachFrom(
-      decision,
-      Overloaded{[&](const deployed_t& deployed) {
-                   in_force_later.insert(deployed.request_id);
-                   return false;
-                 },
-                 [&](const verdict_t& verdict) {
-                   if (verdict.code == verdict_t::CODE_STALE_REQUEST) {
-                     replaced.requests.insert(verdict.request_id);
-                   } else if (verdict.code == verdict_t::CODE_STALE_MAP) {
-                     replaced.maps.insert(verdict.map_id);
-                   } else if (IsStale(verdict)) {
-                     replaced.baselines.insert(verdict.baseline_digest);
-                   }
-                   return false;
-                 }});
+  ForEachFrom(decision, Overloaded{[&](const deployed_t& deployed) {
+                                     in_force_later.insert(deployed.request_id);
+                                     return false;
+                                   },
+                                   [&](const verdict_t& verdict) {
+                                     AddReplaced(verdict, replaced);
+                                     return false;
+                                   }});
   for (const std::int64_t id : in_force_later) replaced.requests.erase(id);
   return replaced;
 }

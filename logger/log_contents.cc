@@ -8,6 +8,7 @@
 #include "bus/codec.h"
 #include "logger/log_channels.h"
 #include "terrain/digest.h"
+#include "verifier/verify.h"
 
 namespace terra::logger {
 namespace {
@@ -236,6 +237,21 @@ std::vector<std::uint8_t> Essence(const LogContents::Decided& message) {
         return Essence(one);
       },
       message);
+}
+
+std::string InWords(const LogContents::Decided& decided) {
+  if (const auto* verdict = std::get_if<terra_msg::verdict_t>(&decided)) {
+    return "VERDICT " +
+           std::string(verifier::CodeName(verifier::Code{verdict->code})) +
+           ", cost " + std::to_string(verdict->candidate_cost) + " against " +
+           std::to_string(verdict->cost_to_beat);
+  }
+  const auto& deployed = std::get<terra_msg::deployed_t>(decided);
+  return "DEPLOYED route " + std::to_string(deployed.route_seq) + " in mode " +
+         std::to_string(deployed.mode) + ", cause " +
+         std::to_string(deployed.cause) + ", cost " +
+         std::to_string(deployed.deployed_cost) + " against " +
+         std::to_string(deployed.baseline_cost);
 }
 
 }  // namespace terra::logger

@@ -129,4 +129,7 @@ std::vector<std::uint8_t> Essence(terra_msg::deployed_t message);
 std::vector<std::uint8_t> Essence(terra_msg::verdict_t message);
 std::vector<std::uint8_t> Essence(const LogContents::Decided& message);
 
+/// Says a decision in a few words, for a finding.
+std::string InWords(const LogContents::Decided& decided);
+
 }  // namespace terra::logger

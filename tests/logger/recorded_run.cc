@@ -201,6 +201,7 @@ Messages RandomRun(std::uint64_t seed) {
   testing::Random random(seed);
   RecordedRun run(random.OneIn(3) ? 2.0 : 0.0);
   std::int64_t request = 100;
+  int place = 0;
   std::vector<baseline_t> baselines;
   const std::array routes = {kOverTheTop, kHigherUp, kThroughTheBar, kOutside};
   for (int step = 0; step < 30; ++step) {
@@ -210,6 +211,7 @@ Messages RandomRun(std::uint64_t seed) {
     const int what = random.Int(0, 17);
     if (what == 0 || request == 100) {
       run.Ask(++request);
+      place = 0;
     } else if (what == 1) {
       run.Ask(request, true);
     } else if (what == 2) {
@@ -224,7 +226,9 @@ Messages RandomRun(std::uint64_t seed) {
     } else if (what == 5) {
       run.Ask(random.Int(90, 200), true);  // perhaps of none
     } else if (what <= 8 && deployed) {
-      run.DriveTo(*deployed, random.Int(0, 150));
+      // A robot does not turn back.
+      place = random.Int(place, 150);
+      run.DriveTo(*deployed, place);
     } else if (what <= 11 && deployed) {
       run.AdviseFrom(*deployed, random.Int(0, 150));
     } else if (!baselines.empty()) {

@@ -16,7 +16,8 @@
 namespace terra {
 namespace {
 
-// One bit per block of a row.
+// For sets of a row's blocks, one bit each; no map is wider than 8192 cells
+// (TerrainMap::kMaxSide).
 constexpr int kMaxWords = 8192 / kLanes / 64 + 1;
 
 class Sweeper {
@@ -122,18 +123,33 @@ class Sweeper {
     return any != 0;
   }
 
-  // Relaxes the active blocks of a row from the row beside it, from west to
-  // east, where keys that are handed on activate further blocks; then hands
-  // them on to the west, which few blocks have a use for. `changed` gets the
-  // blocks in which a key fell.
+  // Relaxes the active blocks of a row from the row beside it and lets what has
+  // changed spread along the row. Adds the blocks in which a key fell to
+  // `changed`; uses up `active`.
   void RelaxRow(int y, int from, std::uint64_t* active,
                 std::uint64_t* changed) {
     std::uint64_t improved_from_east[kMaxWords] = {};
+    RelaxEastward(y, from, active, changed, improved_from_east);
+    SpreadWestward(y, improved_from_east, changed);
     for (int w = 0; w < num_words_; ++w) {
-      for (std::uint64_t bits = active[w]; bits != 0;) {
-        const int bit = __builtin_ctzll(bits);
-        bits &= bits - 1;
-        const int block = w * 64 + bit;
+      Pending(1, y)[w] |= changed[w];
+      Pending(-1, y)[w] |= changed[w];
+    }
+    if (y == task_.goal_row && Row(y)[task_.goal_column] < task_.bound) {
+      task_.bound = Row(y)[task_.goal_column];
+      task_.found = true;
+    }
+  }
+
+  // From west to east, where keys that are handed on activate the next block.
+  // Notes the blocks to which keys are to be handed on westward.
+  void RelaxEastward(int y, int from, std::uint64_t* active,
+                     std::uint64_t* changed,
+                     std::uint64_t* improved_from_east) {
+    for (int w = 0; w < num_words_; ++w) {
+      while (active[w] != 0) {
+        const int block = w * 64 + __builtin_ctzll(active[w]);
+        active[w] &= active[w] - 1;
         if (RelaxFromRow(y, from, block)) {
           SetBit(changed, block);
         }
@@ -142,35 +158,30 @@ class Sweeper {
         }
         if (LeadsOn<East>(y, block)) {
           SetBit(active, block + 1);
-          bits |= bit < 63 ? std::uint64_t{2} << bit : 0;
         }
         if (LeadsOn<West>(y, block)) {
           SetBit(improved_from_east, block - 1);
         }
       }
     }
+  }
+
+  // From east to west, over the few blocks that have a use for it.
+  void SpreadWestward(int y, std::uint64_t* improved_from_east,
+                      std::uint64_t* changed) {
     for (int w = num_words_ - 1; w >= 0; --w) {
-      for (std::uint64_t bits = improved_from_east[w]; bits != 0;) {
-        const int bit = 63 - __builtin_clzll(bits);
-        bits ^= std::uint64_t{1} << bit;
+      while (improved_from_east[w] != 0) {
+        const int bit = 63 - __builtin_clzll(improved_from_east[w]);
         const int block = w * 64 + bit;
+        improved_from_east[w] ^= std::uint64_t{1} << bit;
         if (!SpreadFromEast(y, block)) {
           continue;
         }
         SetBit(changed, block);
         if (LeadsOn<West>(y, block)) {
           SetBit(improved_from_east, block - 1);
-          bits |= bit > 0 ? std::uint64_t{1} << (bit - 1) : 0;
         }
       }
-    }
-    for (int w = 0; w < num_words_; ++w) {
-      Pending(1, y)[w] |= changed[w];
-      Pending(-1, y)[w] |= changed[w];
-    }
-    if (y == task_.goal_row && Row(y)[task_.goal_column] < task_.bound) {
-      task_.bound = Row(y)[task_.goal_column];
-      task_.found = true;
     }
   }
 

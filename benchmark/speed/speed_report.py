@@ -240,7 +240,7 @@ def plot(s, path):
         axis.set_xlabel("side of the map, cells")
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("median, ms")
-    axes[1].legend(fontsize=6, loc="upper left", bbox_to_anchor=(1, 1))
+    axes[1].legend(fontsize=7, loc="upper left", bbox_to_anchor=(1, 1))
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
 

@@ -76,13 +76,17 @@ void SessionAudit::Take(Decisions::const_iterator at) {
   last_ = decision;
 }
 
-// The snapshot's DEPLOYED is the state to begin from. Its VERDICT tells how
-// many decisions there were, and may have led to the next DEPLOYED; that its
-// inputs are gone is no finding, since it stands in the part before.
+// The snapshot's DEPLOYED is the state to begin from, if anything goes on from
+// there: that of a gate which has ended may name a map of long ago. Its VERDICT
+// tells how many decisions there were, and may have led to the next DEPLOYED;
+// that its inputs are gone is no finding, since it stands in the part before.
 void SessionAudit::TakeState(Decisions::const_iterator at) {
   at_begin_ = false;
+  if (decisions_.rbegin()->second.index < contents_.state_end) return;
   if (const auto* deployed = std::get_if<deployed_t>(&at->second.message)) {
     BeginFrom(*deployed, at->second.index);
+  } else if (!gate_ && !lost_) {
+    BeginUnasked(*at);
   } else if (gate_ &&
              Hear(at, causes_.WaysTo(at->second, *gate_, route_seq_offset_))) {
     Number(at->first);
@@ -90,11 +94,23 @@ void SessionAudit::TakeState(Decisions::const_iterator at) {
   }
 }
 
+// The snapshot has no DEPLOYED of this gate, so it was not asked for a route
+// yet and knew cancelled requests only.
+void SessionAudit::BeginUnasked(const Decisions::value_type& verdict) {
+  gate_.emplace(options_);
+  for (const std::int64_t id : later_.ReplacedBefore(verdict.first).requests) {
+    gate_->Hear({verifier::RequestEvent{id, true, {}, {}}});
+  }
+  decision_offset_ = verdict.first;
+  route_seq_offset_ = 0;
+  causes_.BeginAt(verdict.second.index);
+}
+
 // Returns whether the last decision before this one is known, and reports a gap
 // if not.
 bool SessionAudit::Follows(std::int64_t decision) {
   if (last_ == 0 || decision - 1 == last_) return true;
-  if (at_begin_ && gate_) return true;  // Verdicts from before the log.
+  if (at_begin_) return true;  // Verdicts from before the log.
   Fail(Finding::Kind::kGap, decision,
        "decisions after " + std::to_string(last_) + " to " +
            std::to_string(decision - 1) + " are not in the log");
@@ -106,6 +122,7 @@ void SessionAudit::TakeFirst(const Logged<Decided>& logged) {
     BeginFrom(*deployed, logged.index);
     return;
   }
+  at_begin_ = false;
   const auto& verdict = std::get<verdict_t>(logged.message);
   // What was in force has not been repeated yet, or a finding says why it is
   // not known.

@@ -325,7 +325,7 @@ DecisionCauses::Step DecisionCauses::PosesUntil(bool passed,
     return std::nullopt;
   };
   if (found == contents_.poses.end()) return missing();
-  verifier::DrivenRoute driven = gate_->driven();
+  DrivenRoute driven = gate_->driven();
   GateEvents heard;
   for (std::size_t i = gate_->poses_heard();
        driven.Passed(verdict.anchor_index) != passed; ++i) {

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "terrain/driven_route.h"
 #include "verifier/gate.h"
 
 namespace terra::logger {
@@ -35,7 +36,7 @@ class ReplayedGate {
   /// The baseline itself, as it was heard.
   const verifier::BaselineEvent& baseline() const { return baseline_; }
   const verifier::Deployed& deployed() const { return gate_.deployed(); }
-  const verifier::DrivenRoute& driven() const { return gate_.driven(); }
+  const DrivenRoute& driven() const { return gate_.driven(); }
   std::size_t poses_heard() const { return poses_heard_; }
 
  private:

@@ -41,7 +41,7 @@ void StateSnapshot::Take(bus::Channel channel, const HeardEvent& event) {
     case bus::Channel::kDeployed:
       return TakeDeployed(event);
     case bus::Channel::kVerdict:
-      return TakeNewest<terra_msg::verdict_t>(verdict_, event);
+      return TakeVerdict(event);
     case bus::Channel::kMapRequest:
     case bus::Channel::kStatus:
     case bus::Channel::kLog:
@@ -99,9 +99,23 @@ void StateSnapshot::DropOldMap() {
 void StateSnapshot::TakeDeployed(const HeardEvent& event) {
   const auto deployed = bus::Decode<terra_msg::deployed_t>(event.data);
   if (!deployed) return;
-  deployed_ = std::make_shared<const HeardEvent>(event);
+  GateOf(deployed->session).deployed =
+      std::make_shared<const HeardEvent>(event);
   deployed_map_id_ = deployed->map_id;
   DropOldMap();
+}
+
+void StateSnapshot::TakeVerdict(const HeardEvent& event) {
+  const auto verdict = bus::Decode<terra_msg::verdict_t>(event.data);
+  if (!verdict) return;
+  GateOf(verdict->session).verdict = std::make_shared<const HeardEvent>(event);
+}
+
+StateSnapshot::KeptGate& StateSnapshot::GateOf(std::int64_t session) {
+  const auto known = std::ranges::find(gates_, session, &KeptGate::session);
+  if (known != gates_.end()) return *known;
+  if (gates_.size() == kMaxGates) gates_.pop_front();
+  return gates_.emplace_back(KeptGate{session, nullptr, nullptr});
 }
 
 void StateSnapshot::TakeTiles(const HeardEvent& event) {
@@ -145,13 +159,13 @@ void StateSnapshot::TakeConfig(const HeardEvent& event) {
 void StateSnapshot::TakeBaseline(const HeardEvent& event) {
   const auto baseline = bus::Decode<terra_msg::baseline_t>(event.data);
   if (!baseline) return;
-  const auto kept = std::make_shared<const HeardEvent>(event);
-  if (baseline->baseline_digest == baseline_digest_ && !baselines_.empty()) {
-    baselines_.back() = kept;
-    return;
-  }
-  baseline_digest_ = baseline->baseline_digest;
-  baselines_.push_back(kept);
+  // Those without a route have digest 0, and the newest counts.
+  std::erase_if(baselines_, [&baseline](const KeptBaseline& known) {
+    return known.digest == baseline->baseline_digest &&
+           known.planner == baseline->session;
+  });
+  baselines_.push_back({baseline->baseline_digest, baseline->session,
+                        std::make_shared<const HeardEvent>(event)});
   if (baselines_.size() > kMaxBaselines) baselines_.pop_front();
 }
 
@@ -178,10 +192,12 @@ void StateSnapshot::Visit(
     }
   }
   if (request_) visit(*request_);
-  for (const Kept& baseline : baselines_) visit(*baseline);
+  for (const KeptBaseline& baseline : baselines_) visit(*baseline.message);
   for (const Kept& advice : advice_) visit(*advice);
-  for (const Kept& kept : {pose_, deployed_, verdict_}) {
-    if (kept) visit(*kept);
+  if (pose_) visit(*pose_);
+  for (const KeptGate& gate : gates_) {
+    if (gate.deployed) visit(*gate.deployed);
+    if (gate.verdict) visit(*gate.verdict);
   }
 }
 

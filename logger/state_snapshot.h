@@ -21,19 +21,21 @@ namespace terra::logger {
 ///
 /// Keeps the newest CONFIG of each process; the map of the newest MAP_HEADER,
 /// with the tiles that it lists, and the map that DEPLOYED names if that is
-/// another; the newest PLAN_REQUEST, POSE and DEPLOYED; the newest baselines
-/// (what is deployed may be an older one) and advice (its verdict may come in
-/// the next part); and the newest VERDICT, which tells how many decisions there
-/// were before.
+/// another; the newest PLAN_REQUEST and POSE; the newest baselines (what is
+/// deployed may be an older one) and advice (its verdict may come in the next
+/// part); and of each gate the newest DEPLOYED, and the newest VERDICT, which
+/// tells how many decisions there were before.
 ///
-/// Bounds: two maps' compressed tiles, kMaxProcesses configurations, kMaxAdvice
-///         advices. Malformed messages change nothing.
+/// Bounds: two maps' compressed tiles, kMaxProcesses configurations,
+///         kMaxBaselines, kMaxAdvice, kMaxGates. Malformed messages change
+///         nothing.
 /// Threads: one.
 class StateSnapshot {
  public:
   static constexpr std::size_t kMaxProcesses = 64;
   static constexpr std::size_t kMaxAdvice = 64;
   static constexpr std::size_t kMaxBaselines = 8;
+  static constexpr std::size_t kMaxGates = 4;
 
   void Take(bus::Channel channel, const HeardEvent& event);
 
@@ -47,6 +49,17 @@ class StateSnapshot {
     bus::MapOutline outline;
     std::vector<Kept> tiles;  // One message may carry several.
   };
+  struct KeptBaseline {
+    std::int64_t digest = 0;
+    std::int64_t planner = 0;  // Its session: two may find the same route.
+    Kept message;
+  };
+  // One session of the gate; it deploys nothing before it is asked for a route.
+  struct KeptGate {
+    std::int64_t session = 0;
+    Kept deployed;
+    Kept verdict;
+  };
 
   void TakeHeader(const HeardEvent& event);
   void TakeTiles(const HeardEvent& event);
@@ -56,6 +69,8 @@ class StateSnapshot {
   void TakeBaseline(const HeardEvent& event);
   void TakeAdvice(const HeardEvent& event);
   void TakeDeployed(const HeardEvent& event);
+  void TakeVerdict(const HeardEvent& event);
+  KeptGate& GateOf(std::int64_t session);
   void DropOldMap();
   template <typename T>
   void TakeNewest(Kept& kept, const HeardEvent& event);
@@ -64,13 +79,12 @@ class StateSnapshot {
   std::optional<KeptMap> map_;
   std::optional<KeptMap> old_map_;  // That DEPLOYED still names.
   Kept request_;
-  std::deque<Kept> baselines_;  // Of different digests, the newest last.
-  std::int64_t baseline_digest_ = 0;
-  std::deque<Kept> advice_;  // Different ones, the newest last.
+  // Different ones, the newest last.
+  std::deque<KeptBaseline> baselines_;
+  std::deque<Kept> advice_;
   Kept pose_;
-  Kept deployed_;
+  std::deque<KeptGate> gates_;  // The one that began last is last.
   std::int64_t deployed_map_id_ = 0;
-  Kept verdict_;
 };
 
 }  // namespace terra::logger

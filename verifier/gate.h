@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "terrain/map.h"
 #include "terrain/driven_route.h"
+#include "terrain/map.h"
 #include "verifier/gate_memory.h"
 #include "verifier/gate_messages.h"
 #include "verifier/verify.h"

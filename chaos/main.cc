@@ -37,6 +37,19 @@ struct Connections {
   std::optional<AdviceReceiver> overheard;
 };
 
+// Throws as CLI11 does for wrong usage.
+void ChooseFaults(Arguments& arguments) {
+  auto chosen = arguments.chosen.begin();
+  for (const terra::chaos::Fault& fault : AllFaults()) {
+    const bool by_all = arguments.all && fault.name != "offset-wrap";
+    if (*chosen++ || by_all) arguments.chaos.faults.push_back(&fault);
+  }
+  if (arguments.chaos.faults.empty()) {
+    throw CLI::ValidationError("which fault?",
+                               "--all, or one or more of the flags of --help");
+  }
+}
+
 void AddOptions(CLI::App& app, Arguments& arguments) {
   for (const terra::chaos::Fault& fault : AllFaults()) {
     arguments.chosen.push_back(false);
@@ -62,25 +75,14 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "the port that is attacked. The deployed bus is trusted: see "
                  "docs/deployment.md for what an attack on it can do")
       ->check(CLI::IsMember({"advice", "deployed"}));
-}
-
-terra::Status ChooseFaults(Arguments& arguments) {
-  auto chosen = arguments.chosen.begin();
-  for (const terra::chaos::Fault& fault : AllFaults()) {
-    const bool by_all = arguments.all && fault.name != "offset-wrap";
-    if (*chosen++ || by_all) arguments.chaos.faults.push_back(&fault);
-  }
-  if (!arguments.chaos.faults.empty()) return terra::Done{};
-  return terra::Error{terra::ErrorCode::kInvalid,
-                      "which fault? --all, or one or more of the flags of "
-                      "terra-chaos --help"};
+  app.callback([&arguments] {
+    ChooseFaults(arguments);
+  });
 }
 
 Result<std::unique_ptr<terra::bus::Node>> MakeNode(
     Arguments& arguments, Connections& connections,
     terra::bus::ProcessContext& context) {
-  const terra::Status chosen = ChooseFaults(arguments);
-  if (!chosen) return chosen.error();
   const std::string& url =
       arguments.to == "advice" ? context.bus.advice_url : context.bus.lcm_url;
   Result<DatagramSocket> socket = DatagramSocket::Open(url);

@@ -14,20 +14,12 @@ namespace {
 constexpr std::size_t kMaxHeaderBytes = 65'536;
 constexpr int kPollMs = 1'000;
 
-struct CloseEasy {
-  void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
-};
-struct CloseMulti {
-  void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
-};
 struct CloseUrl {
   void operator()(CURLU* url) const { curl_url_cleanup(url); }
 };
 struct FreeList {
   void operator()(curl_slist* list) const { curl_slist_free_all(list); }
 };
-using Easy = std::unique_ptr<CURL, CloseEasy>;
-using Multi = std::unique_ptr<CURLM, CloseMulti>;
 using List = std::unique_ptr<curl_slist, FreeList>;
 
 void InitialiseLibrary() {
@@ -163,14 +155,20 @@ void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
 }  // namespace
 
 struct HttpTransport::State {
-  Multi multi;
-  Easy easy;
+  struct CloseEasy {
+    void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
+  };
+  struct CloseMulti {
+    void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
+  };
+
+  std::unique_ptr<CURLM, CloseMulti> multi{curl_multi_init()};
+  std::unique_ptr<CURL, CloseEasy> easy{curl_easy_init()};
 };
 
 HttpTransport::HttpTransport() {
   InitialiseLibrary();
-  state_ = std::make_unique<State>(
-      State{Multi(curl_multi_init()), Easy(curl_easy_init())});
+  state_ = std::make_unique<State>();
   if (state_->multi == nullptr || state_->easy == nullptr) {
     throw std::bad_alloc();
   }
@@ -238,6 +236,11 @@ Result<std::string> CheckBaseUrl(const std::string& url) {
     return Error{ErrorCode::kInvalid,
                  "an address must not hold a name or password; keys come from "
                  "the environment"};
+  }
+  if (!UrlPart(parsed.get(), CURLUPART_QUERY).empty()) {
+    return Error{ErrorCode::kInvalid,
+                 "an address must not hold a query ('?'); keys come from the "
+                 "environment"};
   }
   if (scheme != "https" && !(scheme == "http" && loopback)) {
     return Error{ErrorCode::kInvalid,

@@ -218,7 +218,7 @@ std::string RouteRules(const PromptInput& in) {
          "route dearer.\n";
 }
 
-std::string AnswerForm(const PromptInput& in) {
+std::string AnswerInstructions(const PromptInput& in) {
   std::string text = "ANSWER\n";
   const std::string several =
       in.switches.candidates == 1
@@ -269,7 +269,7 @@ std::string WritePrompt(const PromptInput& in) {
     text += ReferenceSection(*in.reference) + "\n";
   }
   text += (in.method == Method::kAdvisor ? AdviceRules(in) : RouteRules(in)) +
-          "\n" + AnswerForm(in);
+          "\n" + AnswerInstructions(in);
   return text;
 }
 

@@ -1,6 +1,7 @@
 #include "advisor/http_transport.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cctype>
 #include <new>
 
@@ -124,8 +125,9 @@ List HeadersOf(const HttpRequest& request) {
 
 void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
                Sink& sink) {
+  // Rounded up: a call that ends with its time is never seen to end before it.
   const auto milliseconds = [](double seconds) {
-    return static_cast<long>(std::max(1.0, seconds * 1000));
+    return static_cast<long>(std::ceil(std::max(1.0, seconds * 1000)));
   };
   curl_easy_setopt(easy, CURLOPT_URL, request.url.c_str());
   curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, "http,https");

@@ -1,8 +1,8 @@
 #include "advisor/http_transport.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cctype>
+#include <cmath>
 #include <new>
 
 #include <curl/curl.h>

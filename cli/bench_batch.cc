@@ -162,10 +162,9 @@ void AddBenchImportBatch(CLI::App& bench, int& exit_code) {
                   "Result and error files of the provider (JSON lines)")
       ->required()
       ->type_name("F...");
-  command
-      .add_option("--price", arguments->prices,
-                  "MODEL=INPUT:OUTPUT of the batch, dollars per million "
-                  "tokens; repeatable");
+  command.add_option("--price", arguments->prices,
+                     "MODEL=INPUT:OUTPUT of the batch, dollars per million "
+                     "tokens; repeatable");
   command
       .add_option("--recording", arguments->recording,
                   "Recording to add the answers to")

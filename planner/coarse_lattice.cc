@@ -56,7 +56,9 @@ struct NodeBox {
 int FloorDivide(int value, int by) {
   return value >= 0 ? value / by : -((-value + by - 1) / by);
 }
-int CeilDivide(int value, int by) { return -FloorDivide(-value, by); }
+int CeilDivide(int value, int by) {
+  return -FloorDivide(-value, by);
+}
 
 // The nodes that a start or goal may be joined to. An end that lies on a node
 // reaches the node's 8 neighbours under every rule.

@@ -99,7 +99,8 @@ class StepCosts {
     if (n.minor == 0 || n.minor == n.major) {
       return Run(from, to);
     }
-    return cut_corners_ ? Bresenham<true>(from, to) : Bresenham<false>(from, to);
+    return cut_corners_ ? Bresenham<true>(from, to)
+                        : Bresenham<false>(from, to);
   }
 
   /// Segment for ends in one row, column or diagonal: no Bresenham needed.

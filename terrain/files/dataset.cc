@@ -77,9 +77,9 @@ Result<std::vector<DatasetCase>> ReadCases(const std::string& path) {
     Result<DatasetCase> one = ParseCase(*table, row, path);
     if (!one.ok()) return one.error();
     if (!ids.insert(one->case_id).second) {
-      return Error{ErrorCode::kInvalid,
-                   path + ":" + std::to_string(row.line) + ": case_id '" +
-                       one->case_id + "' comes twice"};
+      return Error{ErrorCode::kInvalid, path + ":" + std::to_string(row.line) +
+                                            ": case_id '" + one->case_id +
+                                            "' comes twice"};
     }
     cases.push_back(std::move(*one));
   }
@@ -109,8 +109,9 @@ Status ReadJson(const std::string& path, Dataset& dataset) {
 
 const DatasetCase* Dataset::Find(const std::string& case_id) const {
   const auto found =
-      std::find_if(cases.begin(), cases.end(),
-                   [&](const DatasetCase& c) { return c.case_id == case_id; });
+      std::find_if(cases.begin(), cases.end(), [&](const DatasetCase& c) {
+        return c.case_id == case_id;
+      });
   return found == cases.end() ? nullptr : &*found;
 }
 
@@ -124,7 +125,7 @@ Result<Dataset> ReadDataset(const std::string& folder) {
   Result<std::vector<DatasetCase>> cases =
       ReadCases((root / "cases.csv").string());
   if (!cases.ok()) return cases.error();
-  Dataset dataset{folder, "", "", "", "", std::move(*legend),
+  Dataset dataset{folder,           "", "", "", "", std::move(*legend),
                   std::move(*cases)};
   const Status json = ReadJson((root / "dataset.json").string(), dataset);
   if (!json.ok()) return json.error();
@@ -154,14 +155,13 @@ Status WriteCases(const std::vector<DatasetCase>& cases,
   }
   std::string text = CsvLine(header);
   for (const DatasetCase& one : cases) {
-    std::vector<std::string> fields = {
-        one.case_id,
-        one.map,
-        std::to_string(one.start.x),
-        std::to_string(one.start.y),
-        std::to_string(one.goal.x),
-        std::to_string(one.goal.y),
-        one.group};
+    std::vector<std::string> fields = {one.case_id,
+                                       one.map,
+                                       std::to_string(one.start.x),
+                                       std::to_string(one.start.y),
+                                       std::to_string(one.goal.x),
+                                       std::to_string(one.goal.y),
+                                       one.group};
     for (std::size_t i = kCaseColumns.size(); i < header.size(); ++i) {
       const auto found = one.extra.find(header[i]);
       fields.push_back(found == one.extra.end() ? "" : found->second);

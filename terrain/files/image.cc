@@ -123,7 +123,9 @@ std::int64_t TakePgmNumber(std::string_view bytes, std::size_t& at) {
 
 }  // namespace
 
-bool IsPng(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
+bool IsPng(std::string_view bytes) {
+  return bytes.starts_with(kPngSignature);
+}
 
 Status CheckMapSize(std::int64_t width, std::int64_t height,
                     const std::string& name) {
@@ -186,8 +188,8 @@ Result<cv::Mat> DecodePgm(std::string_view bytes, const std::string& name) {
 Status WritePng(const cv::Mat& image, const std::string& path) {
   std::vector<unsigned char> bytes;
   cv::imencode(".png", image, bytes);
-  return WriteWholeFile(path, {reinterpret_cast<const char*>(bytes.data()),
-                               bytes.size()});
+  return WriteWholeFile(
+      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 ByteRaster ToRaster(const cv::Mat& image) {

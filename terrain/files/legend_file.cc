@@ -58,8 +58,7 @@ Result<Legend> ReadLegend(const std::string& name_or_path) {
     return *builtin;
   }
   const std::string& path = name_or_path;
-  const Result<CsvTable> table =
-      ReadCsv(path, {"id", "name", "cost", "color"});
+  const Result<CsvTable> table = ReadCsv(path, {"id", "name", "cost", "color"});
   if (!table.ok()) {
     if (table.error().code != ErrorCode::kNotFound) return table.error();
     return Error{ErrorCode::kNotFound,

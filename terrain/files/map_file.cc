@@ -19,12 +19,14 @@ constexpr std::size_t kMaxYamlBytes = 64 << 10;
 bool HasExtension(const std::string& path,
                   std::initializer_list<std::string_view> extensions) {
   std::string lower = path;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  return std::any_of(
-      extensions.begin(), extensions.end(),
-      [&](std::string_view extension) { return lower.ends_with(extension); });
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) {
+                   return static_cast<char>(std::tolower(c));
+                 });
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](std::string_view extension) {
+                       return lower.ends_with(extension);
+                     });
 }
 
 // The legend that the user gave, else the format's.
@@ -71,15 +73,16 @@ Result<MapFile> ReadMap(const std::string& path,
   if (!png && !bytes->starts_with("type ")) {
     return Error{
         ErrorCode::kUnsupported,
-        path + ": not a map that is known. Known are 8-bit PNG of terrain "
-               "ids, 24-bit PNG in legend colours, MovingAI .map and ROS "
-               "map_server .yaml"};
+        path +
+            ": not a map that is known. Known are 8-bit PNG of terrain "
+            "ids, 24-bit PNG in legend colours, MovingAI .map and ROS "
+            "map_server .yaml"};
   }
   Result<Legend> legend =
       LegendFor(options, png ? MultiTerraPathLegend() : MovingAiLegend());
   if (!legend.ok()) return legend.error();
-  Result<ByteRaster> ids = png ? ParsePngMap(*bytes, *legend, path)
-                               : ParseMovingAiMap(*bytes, path);
+  Result<ByteRaster> ids =
+      png ? ParsePngMap(*bytes, *legend, path) : ParseMovingAiMap(*bytes, path);
   return MakeMapFile(std::move(ids), std::move(*legend), options, path);
 }
 

@@ -1,6 +1,6 @@
 // Source: Sturtevant 2012, "Benchmarks for Grid-Based Pathfinding" (IEEE TCIAIG
-// 4:2). Header lines `type octile`, `height H`, `width W`, `map`, then H rows of
-// W characters.
+// 4:2). Header lines `type octile`, `height H`, `width W`, `map`, then H rows
+// of W characters.
 #include <optional>
 
 #include "terrain/builtin_legends.h"

@@ -18,9 +18,9 @@ Error UnknownColor(const std::string& name, Cell cell, const cv::Vec3b& pixel) {
   const Color color{pixel[2], pixel[1], pixel[0]};
   return Error{ErrorCode::kInvalid,
                name + ": pixel " + ToString(cell) + " has colour " +
-                   HexColor(ToRgb(color)) + " (RGB " +
-                   std::to_string(color.r) + ", " + std::to_string(color.g) +
-                   ", " + std::to_string(color.b) +
+                   HexColor(ToRgb(color)) + " (RGB " + std::to_string(color.r) +
+                   ", " + std::to_string(color.g) + ", " +
+                   std::to_string(color.b) +
                    "), which the legend does not have; give the right one "
                    "with --legend, or correct the picture (colours are never "
                    "rounded to the nearest)"};

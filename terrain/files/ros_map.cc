@@ -30,7 +30,8 @@ Error Bad(const std::string& name, const std::string& what) {
 
 YAML::Node Get(const YAML::Node& yaml, const char* key) {
   YAML::Node value = yaml[key];
-  if (!value) throw YAML::Exception(yaml.Mark(), std::string("no '") + key + "'");
+  if (!value)
+    throw YAML::Exception(yaml.Mark(), std::string("no '") + key + "'");
   return value;
 }
 
@@ -39,8 +40,8 @@ double GetNumber(const YAML::Node& yaml, const char* key, double low,
   const YAML::Node node = Get(yaml, key);
   const auto value = node.as<double>();
   if (!(value >= low && value <= high)) {
-    throw YAML::Exception(node.Mark(), std::string("'") + key +
-                                           "' is out of its range");
+    throw YAML::Exception(node.Mark(),
+                          std::string("'") + key + "' is out of its range");
   }
   return value;
 }
@@ -69,7 +70,8 @@ Result<Settings> ReadSettings(const YAML::Node& yaml, const std::string& name,
   settings.placement.cell_size = GetNumber(yaml, "resolution", 1e-6, kFar);
   const auto origin = Get(yaml, "origin").as<std::array<double, 3>>();
   for (const double value : origin) {
-    if (!(std::abs(value) <= kFar)) return Bad(name, "'origin' is out of range");
+    if (!(std::abs(value) <= kFar))
+      return Bad(name, "'origin' is out of range");
   }
   settings.placement.origin_x = origin[0];
   settings.placement.origin_y = origin[1];
@@ -136,9 +138,12 @@ Result<RosMap> ParseRosMap(std::string_view text, const std::string& name,
   if (settings->mode == Mode::kTrinary) {
     std::array<std::uint8_t, 256> id_of_grey{};
     for (std::size_t grey = 0; grey < id_of_grey.size(); ++grey) {
-      id_of_grey[grey] = OccupancyOf(static_cast<std::uint8_t>(grey), *settings);
+      id_of_grey[grey] =
+          OccupancyOf(static_cast<std::uint8_t>(grey), *settings);
     }
-    *ids = ids->unaryExpr([&](std::uint8_t grey) { return id_of_grey[grey]; });
+    *ids = ids->unaryExpr([&](std::uint8_t grey) {
+      return id_of_grey[grey];
+    });
   }
   return RosMap{std::move(*ids), settings->placement};
 }

@@ -1,12 +1,12 @@
 #include "terrain/files/whole_file.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
-
-#include <unistd.h>
 
 namespace terra {
 namespace {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "terra_msg/verdict_t.hpp"
+
 #include "terrain/builtin_legends.h"
 #include "verifier/verify.h"
 

@@ -11,7 +11,8 @@
 namespace terra {
 namespace {
 
-// Signed, because SSE2 and AVX2 compare no others; keys leave room for the sign.
+// Signed, because SSE2 and AVX2 compare no others; keys leave room for the
+// sign.
 using Lanes [[gnu::vector_size(4 * kLanes)]] = std::int32_t;
 using Codes [[gnu::vector_size(2 * kLanes)]] = std::uint16_t;
 

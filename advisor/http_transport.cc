@@ -229,7 +229,9 @@ Result<std::string> CheckBaseUrl(const std::string& url) {
   if (parsed == nullptr ||
       curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
     return Error{ErrorCode::kInvalid,
-                 "'" + url + "' is no address; write https://HOST[:PORT]"};
+                 "'" + url +
+                     "' is no address; write https://HOST[:PORT], or "
+                     "http://127.0.0.1:PORT for a server on this machine"};
   }
   const std::string scheme = UrlPart(parsed.get(), CURLUPART_SCHEME);
   const bool loopback = IsLoopback(UrlPart(parsed.get(), CURLUPART_HOST));

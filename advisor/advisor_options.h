@@ -16,10 +16,11 @@ namespace terra::advisor {
 /// Which advisor, and how an LLM one is asked.
 struct AdvisorOptions {
   std::string backend = "search";
+  bool polish = false;  ///< See PolishingBackend.
   LlmBackendOptions llm;
 };
 
-/// Adds --backend and the options of the LLM backends.
+/// Adds --backend, --polish and the options of the LLM backends.
 void AddAdvisorOptions(CLI::App& app, AdvisorOptions& options);
 
 /// Makes the backend that the options name.

@@ -12,7 +12,7 @@
 // edge), the point of it that hit may from now on only move along the line
 // across the direction in which it came, and the next step goes all the way
 // (alpha = 1); if that hits too, steps are short again. It ends at a free
-// minimum, or when constraints contradict each other.
+// minimum, when constraints contradict each other, or when they are too many.
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -37,6 +37,8 @@ constexpr double kShortSteps = 0.25;
 constexpr double kEpsilon = 1e-5;  // Cells; a shorter step is none.
 // The published method sets no limit; without obstacles it needs about 50.
 constexpr int kMaxIterations = 300;
+// Nor this one; each step solves for all constraints at once.
+constexpr std::size_t kMaxConstraints = 256;
 
 // All waypoints, one a row, ends included.
 using Points = MatrixX2d;
@@ -128,6 +130,8 @@ class Objective {
     solved_.push_back(solver_.solve(row));
   }
 
+  std::size_t num_constraints() const { return constraints_.size(); }
+
   // The step from these points to the minimum; none when the constraints are
   // not independent.
   std::optional<Points> StepFrom(const Points& points) const {
@@ -211,7 +215,8 @@ struct Iterates {
   }
 };
 
-// Adds a constraint for each hit; false where a direction cannot be told.
+// Adds a constraint for each hit; false where a direction cannot be told or
+// there are too many.
 bool ConstrainHits(const std::vector<Hit>& hits, const Points& free,
                    const Points& blocked, Objective& objective) {
   for (const Hit& hit : hits) {
@@ -221,7 +226,7 @@ bool ConstrainHits(const std::vector<Hit>& hits, const Points& free,
     const Vector2d normal = way.normalized();
     objective.Constrain(hit, normal, normal.dot(free_point));
   }
-  return true;
+  return objective.num_constraints() <= kMaxConstraints;
 }
 
 void Shorten(const RefineInput& input, CampanaForm form, Iterates& iterates) {

@@ -159,8 +159,7 @@ BackendFigures LlmBackend::figures() const {
   const CallFigures calls = service_.monitor->figures();
   const CallStatistics& statistics = calls.statistics;
   BackendFigures figures;
-  if (calls.breaker_open) figures.state = "breaker open";
-  if (calls.busy) figures.state = "calling";
+  if (calls.breaker_open) figures.state = "failing: breaker open";
   figures.last_error = calls.last_error;
   std::int64_t skipped = 0;
   {

@@ -43,6 +43,15 @@ NoAnswer ReasonOf(const TryOutcome& outcome) {
   }
 }
 
+/// The path begins with the version ("/v1"), which many people write at the end
+/// of a base address too.
+std::string WithoutVersion(std::string url, const std::string& path) {
+  while (url.ends_with('/')) url.pop_back();
+  const std::string version = path.substr(0, path.find('/', 1));
+  if (url.ends_with(version)) url.resize(url.size() - version.size());
+  return url;
+}
+
 double Jitter() {
   thread_local std::minstd_rand random(std::random_device{}());
   return static_cast<double>(random() - std::minstd_rand::min()) /
@@ -63,7 +72,7 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   }
   const bool own_url = full.base_url.empty();
   if (own_url) full.base_url = format->default_base_url();
-  while (full.base_url.ends_with('/')) full.base_url.pop_back();
+  full.base_url = WithoutVersion(full.base_url, format->Path(full.settings));
   const auto endpoint = CheckBaseUrl(full.base_url);
   if (!endpoint) return endpoint.error();
 

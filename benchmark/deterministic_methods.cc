@@ -5,6 +5,7 @@
 #include "advisor/controls.h"
 #include "advisor/refiners.h"
 #include "benchmark/method.h"
+#include "benchmark/single_search.h"
 #include "benchmark/stopwatch.h"
 #include "terrain/native_search.h"
 #include "terrain/segment.h"
@@ -91,6 +92,13 @@ const std::vector<NamedPlanner>& PlainMethods() {
        kGated, true,
        [](const MethodInput& input) {
          return advisor::RefineByBand(InputOf(input)).route;
+       }},
+      {"llm-astar-single",
+       "control: LLM-A* in its original single search, no advice", kAsReturned,
+       false,
+       [](const MethodInput& input) {
+         return SingleTargetedSearch(input.map, input.dataset_case.start,
+                                     input.dataset_case.goal, {});
        }},
       {"blind-detours",
        "control: straight line and two blind detours, polished, no model",

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmark/paper_rows.h"
+#include "terrain/files/csv.h"
 
 namespace terra::benchmark {
 namespace {
@@ -33,13 +34,14 @@ std::string KeyVariable(const std::string& backend) {
   return "ANTHROPIC_API_KEY";
 }
 
-// What would measure a row.
+// What would measure a row: `more` options, into a folder with this suffix.
 std::string Command(const std::string& method, const std::string& backend,
-                    const std::string& more = "") {
+                    const std::string& more = "",
+                    const std::string& suffix = "") {
   return "not measured; " + KeyVariable(backend) +
          "=... terra bench run --dataset DIR --method " + method +
          " --backend " + backend + more + " --out runs/" + method + "-" +
-         backend;
+         backend + suffix;
 }
 
 // Recordings name the provider that answered.
@@ -85,12 +87,14 @@ constexpr const char* kNotTheirMaps =
     "These are not the paper's maps: generated after its description and "
     "calibrated to its gap table.";
 
-void AddMissing(const std::vector<LoadedRun>& runs, Table& table) {
+void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
+                const std::string& more = "", const std::string& suffix = "") {
   TableBlock missing;
   missing.heading = "Not measured here";
   for (const PaperRow& row : kPaperMethods) {
     if (Measured(runs, row.method, row.backend)) continue;
-    missing.rows.push_back({row.title, Command(row.method, row.backend)});
+    missing.rows.push_back(
+        {row.title, Command(row.method, row.backend, more, suffix)});
   }
   if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
 }
@@ -102,6 +106,7 @@ std::string SettingOf(const LoadedRun& run, const std::string& name,
   const auto settings = nlohmann::json::parse(run.description.settings_json);
   const auto found = settings.find(name);
   if (found == settings.end()) return otherwise;
+  if (found->is_number()) return FormatNumber(found->get<double>());
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
@@ -253,13 +258,15 @@ Table AblationTable(const std::vector<LoadedRun>& runs) {
     const char* route_text;
     const char* rea;
     const char* switches;
+    const char* suffix;
   };
   constexpr Setting kSettings[] = {
-      {"full advisor", "true", "true", "true", ""},
+      {"full advisor", "true", "true", "true", "", ""},
       {"without overlay and route text", "false", "false", "true",
-       " --no-overlay --no-route-text"},
-      {"without route text", "true", "false", "true", " --no-route-text"},
-      {"without REA", "true", "true", "false", " --no-rea"}};
+       " --no-overlay --no-route-text", "-no-baseline"},
+      {"without route text", "true", "false", "true", " --no-route-text",
+       "-no-route-text"},
+      {"without REA", "true", "true", "false", " --no-rea", "-no-rea"}};
   TableBlock measured;
   measured.heading = "Measured here";
   TableBlock missing;
@@ -285,7 +292,8 @@ Table AblationTable(const std::vector<LoadedRun>& runs) {
     }
     if (!found) {
       missing.rows.push_back(
-          {setting.name, Command("advisor", "openai", setting.switches)});
+          {setting.name,
+           Command("advisor", "openai", setting.switches, setting.suffix)});
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
@@ -328,7 +336,7 @@ Table RugdTable(const std::vector<LoadedRun>& runs) {
          "--out runs/rugd-shortcut"});
   }
   table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table);
+  AddMissing(runs, table, "", "-rugd");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Intervals of means: bootstrap over sequences, not frames.",
@@ -364,7 +372,7 @@ Table LatencyTable(const std::vector<LoadedRun>& runs) {
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table);
+  AddMissing(runs, table, " --cases 50", "-latency");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Medians of each stage, p95 by nearest rank; only runs with --jobs 1.",
@@ -415,7 +423,8 @@ Table NoiseTable(const std::vector<LoadedRun>& runs) {
       missing.rows.push_back(
           {std::string("LLM-Advisor (gpt-5.5), noise ") + noise + " %",
            Command("advisor", "openai",
-                   std::string(" --cases 50 --noise ") + noise)});
+                   std::string(" --cases 50 --noise ") + noise,
+                   std::string("-noise") + noise)});
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
@@ -445,10 +454,12 @@ Table PairedTable(const std::vector<LoadedRun>& runs,
           ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
                         others, reference.description.rule);
       if (c.cases == 0) continue;
-      block.rows.push_back(
-          {RowTitle(runs[i]), CountCell(c.cases), CountCell(c.only_first_lower),
-           CountCell(c.only_second_lower), NumberCell(c.mcnemar_p, 4),
-           PercentCell(c.mogr_difference)});
+      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
+                            CountCell(c.only_first_lower),
+                            CountCell(c.only_second_lower),
+                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
+                                               : NumberCell(c.mcnemar_p, 4),
+                            PercentCell(c.mogr_difference)});
     }
   }
   table.blocks.push_back(std::move(block));

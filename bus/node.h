@@ -44,6 +44,8 @@ class Node {
 
   /// True when the process should end by itself.
   virtual bool done() const { return false; }
+  /// Called once when the process ends in order, before exit_code.
+  virtual void Finish() {}
   virtual int exit_code() const { return 0; }
 
  protected:

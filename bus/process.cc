@@ -55,6 +55,7 @@ int Serve(const ProcessSpec& spec, const std::string& name,
   NotifyServiceManager("READY=1");
   loop.Run(*node);
   NotifyServiceManager("STOPPING=1");
+  node->Finish();
   return node->exit_code();
 }
 

@@ -22,7 +22,11 @@ void AddBenchCommand(CLI::App& app, int& exit_code) {
   AddBenchGenerate(bench, exit_code);
   AddBenchGap(bench, exit_code);
   AddBenchReferences(bench, exit_code);
+  AddBenchRugd(bench, exit_code);
   AddBenchRun(bench, exit_code);
+  AddBenchMerge(bench, exit_code);
+  AddBenchTable(bench, exit_code);
+  AddBenchReport(bench, exit_code);
 }
 
 std::string CommandLine() {

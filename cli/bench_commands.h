@@ -14,7 +14,11 @@ namespace terra::cli {
 /// own bench_<name>.cc.
 void AddBenchGenerate(CLI::App& bench, int& exit_code);
 void AddBenchGap(CLI::App& bench, int& exit_code);
+void AddBenchRugd(CLI::App& bench, int& exit_code);
 void AddBenchRun(CLI::App& bench, int& exit_code);
+void AddBenchMerge(CLI::App& bench, int& exit_code);
+void AddBenchTable(CLI::App& bench, int& exit_code);
+void AddBenchReport(CLI::App& bench, int& exit_code);
 void AddBenchReferences(CLI::App& bench, int& exit_code);
 
 /// Adds --jobs: threads to use, 0 = all cores.

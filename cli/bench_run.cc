@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,6 +10,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "advisor/llm_options.h"
+#include "advisor/llm_service.h"
+#include "advisor/prompt.h"
+#include "benchmark/llm_method.h"
 #include "benchmark/run.h"
 #include "bus/build_id.h"
 #include "cli/bench_commands.h"
@@ -31,6 +36,8 @@ struct RunArguments {
   std::string method;
   std::vector<std::string> backends;
   bool gate = false;
+  bool polish = false;
+  advisor::LlmBackendOptions llm;
   std::string cases;
   benchmark::RunOptions options;
   std::string shard = "1/1";
@@ -72,19 +79,51 @@ Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
   return ids;
 }
 
+bool AsksModel(const std::string& backend) {
+  const auto& names = advisor::kLlmBackendNames;
+  return std::find(names.begin(), names.end(), backend) != names.end();
+}
+
+Result<MethodRun> ChooseMethod(const RunArguments& arguments,
+                               const std::string& backend,
+                               const std::string& folder) {
+  if (!AsksModel(backend)) {
+    auto choice = benchmark::FindDeterministicMethod(arguments.method, backend,
+                                                     arguments.gate);
+    if (!choice.ok()) return choice.error();
+    return MethodRun{*std::move(choice), folder, "{}"};
+  }
+  const bool single_search = arguments.method == "llm-astar-single";
+  const auto method =
+      advisor::FindMethod(single_search ? "llm-astar" : arguments.method);
+  if (!method) {
+    return Error{ErrorCode::kInvalid,
+                 "a model is asked by method advisor, direct, llm-astar or "
+                 "llm-astar-single, not by " +
+                     arguments.method};
+  }
+  advisor::LlmBackendOptions options = arguments.llm;
+  options.service.backend = backend;
+  options.method.method = *method;
+  auto made = benchmark::MakeLlmMethod(
+      options, {arguments.polish, arguments.gate, single_search});
+  if (!made.ok()) return made.error();
+  return MethodRun{std::move(made->choice), folder,
+                   std::move(made->settings_json)};
+}
+
 // One run per backend; with several each gets a folder of its own.
 Result<std::vector<MethodRun>> ChooseMethods(const RunArguments& arguments) {
   std::vector<MethodRun> runs;
   std::vector<std::string> backends = arguments.backends;
   if (backends.empty()) backends.emplace_back();
   for (const std::string& backend : backends) {
-    Result<benchmark::MethodChoice> choice = benchmark::FindDeterministicMethod(
-        arguments.method, backend, arguments.gate);
-    if (!choice.ok()) return choice.error();
     const fs::path folder = backends.size() == 1
                                 ? fs::path(arguments.out)
                                 : fs::path(arguments.out) / backend;
-    runs.push_back({*std::move(choice), folder.string(), "{}"});
+    Result<MethodRun> run = ChooseMethod(arguments, backend, folder.string());
+    if (!run.ok()) return run.error();
+    runs.push_back(*std::move(run));
   }
   return runs;
 }
@@ -97,6 +136,10 @@ int RunRun(RunArguments& arguments, const std::string& command_line) {
   arguments.options.cases = *std::move(cases);
   const auto runs = ChooseMethods(arguments);
   if (!runs.ok()) return Fail(runs.error());
+  for (const MethodRun& run : *runs) {
+    // A model is asked one case after the other; shards run side by side.
+    if (run.choice.info.asks_model) arguments.options.jobs = 1;
+  }
   const Status done = benchmark::RunMethods(*dataset, arguments.options, *runs,
                                             {bus::BuildId(), command_line});
   if (!done.ok()) return Fail(done.error());
@@ -107,7 +150,8 @@ int RunRun(RunArguments& arguments, const std::string& command_line) {
 }
 
 std::string MethodHelp() {
-  std::string text = "advisor, or one of: ";
+  std::string text =
+      "advisor; direct or llm-astar with a model; or without a backend: ";
   for (const std::string& name : benchmark::PlainMethodNames()) {
     text += name + " ";
   }
@@ -115,12 +159,20 @@ std::string MethodHelp() {
 }
 
 std::string BackendHelp() {
-  std::string text = "Of advisor; several with commas. Without a model: ";
+  std::string text = "Several with commas. Of advisor, without a model: ";
   for (const std::string& name : benchmark::RefinerNames()) text += name + " ";
+  text += "; with one: ";
+  for (const std::string_view name : advisor::kLlmBackendNames) {
+    text += std::string(name) + " ";
+  }
   return text;
 }
 
 void AddOptions(CLI::App& command, RunArguments& arguments) {
+  // The method is this command's own, and everybody is asked about every case.
+  advisor::AddLlmOptions(command, arguments.llm);
+  command.remove_option(command.get_option("--method"));
+  command.remove_option(command.get_option("--min-gain"));
   command.add_option("--dataset", arguments.dataset, "Dataset folder")
       ->required()
       ->type_name("DIR");
@@ -133,6 +185,9 @@ void AddOptions(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--gate", arguments.gate,
                    "Give a method without fallback one: the final route is "
                    "the baseline where its own is no better");
+  command.add_flag("--polish", arguments.polish,
+                   "advisor with a model: improve each route inside a corridor "
+                   "around it before it is verified");
   command
       .add_option("--cases", arguments.cases,
                   "The first N cases of each group, or a file with an id a "
@@ -173,7 +228,9 @@ void AddBenchRun(CLI::App& bench, int& exit_code) {
       "Example:\n"
       "  terra bench run --dataset data --method advisor --backend "
       "search,shortcut --out runs\n"
-      "  terra bench run --dataset data --method coarse --out runs/coarse");
+      "  terra bench run --dataset data --method coarse --out runs/coarse\n"
+      "  terra bench run --dataset data --method direct --backend replay "
+      "--recording calls.jsonl --out runs/direct");
   command.callback([arguments, &exit_code] {
     arguments->options.shard = *ParseShard(arguments->shard);
     exit_code = RunRun(*arguments, CommandLine());

@@ -19,6 +19,7 @@ void AddAdviseCommand(CLI::App& app, int& exit_code);
 void AddPromptCommand(CLI::App& app, int& exit_code);
 void AddRenderCommand(CLI::App& app, int& exit_code);
 void AddRequestCommand(CLI::App& app, int& exit_code);
+void AddLogCommand(CLI::App& app, int& exit_code);
 void AddMonitorCommand(CLI::App& app, int& exit_code);
 void AddBenchCommand(CLI::App& app, int& exit_code);
 

@@ -20,6 +20,7 @@ void AddCommands(CLI::App& app, int& exit_code) {
   AddPromptCommand(app, exit_code);
   AddRenderCommand(app, exit_code);
   AddRequestCommand(app, exit_code);
+  AddLogCommand(app, exit_code);
   AddMonitorCommand(app, exit_code);
   AddBenchCommand(app, exit_code);
 }

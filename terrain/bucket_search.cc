@@ -63,12 +63,10 @@ void BucketSearch<Keys>::Prepare(std::size_t num_cells) {
 }
 
 template <typename Keys>
-SearchAttempt<typename Keys::Key> BucketSearch<Keys>::Run(const TerrainMap& map,
-                                                          const Keys& keys,
-                                                          Cell start, Cell goal,
-                                                          Key bound) {
+SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
+                                      Cell start, Cell goal, Key bound) {
   Prepare(map.cost_grid().size());
-  SearchAttempt<Key> attempt;
+  SearchAttempt attempt;
   const GridSteps grid(map);
   const OctileBound<Keys> to_goal(keys, goal);
   const auto key_of = [this](std::size_t index) {
@@ -83,8 +81,9 @@ SearchAttempt<typename Keys::Key> BucketSearch<Keys>::Run(const TerrainMap& map,
   };
 
   const Key least = to_goal(start.x, start.y);
+  const bool bounded_by_keys = bound == Keys::kLimit;
   if (least >= bound) {
-    attempt.dropped = true;
+    attempt.beyond_keys = bounded_by_keys;
     return attempt;
   }
   // A quarter of the shortest step: wide enough to have few empty buckets,
@@ -121,7 +120,7 @@ SearchAttempt<typename Keys::Key> BucketSearch<Keys>::Run(const TerrainMap& map,
       const int next_y = y + kSteps[d].y;
       const Key total = key + to_goal(next_x, next_y);
       if (total >= bound) {
-        attempt.dropped = true;
+        attempt.beyond_keys = bounded_by_keys;
         continue;
       }
       push(next, key, total, next_x, next_y, d);
@@ -132,7 +131,7 @@ SearchAttempt<typename Keys::Key> BucketSearch<Keys>::Run(const TerrainMap& map,
     }
   }
   if (attempt.found) {
-    attempt.dropped = false;
+    attempt.beyond_keys = false;
     attempt.cells = ExtractPath(map, keys, start, goal, key_of);
   }
   return attempt;

@@ -6,20 +6,10 @@
 #include "terrain/bucket_queue.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
+#include "terrain/search_attempt.h"
 #include "terrain/search_keys.h"
 
 namespace terra {
-
-/// What one attempt at a search found.
-template <typename Key>
-struct SearchAttempt {
-  bool found = false;
-  /// Not found, but keys at the bound or above it were dropped: with a higher
-  /// bound there may be a path.
-  bool dropped = false;
-  CellPath cells;
-  std::int64_t expanded = 0;
-};
 
 /// A* on all cells with a bucket queue and canonical pruning.
 ///
@@ -36,8 +26,8 @@ class BucketSearch {
 
   /// Finds a path of the smallest key below `bound` (at most Keys::kLimit).
   /// Pre: both ends passable.
-  SearchAttempt<Key> Run(const TerrainMap& map, const Keys& keys, Cell start,
-                         Cell goal, Key bound);
+  SearchAttempt Run(const TerrainMap& map, const Keys& keys, Cell start,
+                    Cell goal, Key bound);
 
   std::size_t bytes() const { return labels_.capacity() * sizeof(Label); }
 

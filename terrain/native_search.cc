@@ -1,11 +1,13 @@
 #include "terrain/native_search.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "terrain/bucket_search.h"
 #include "terrain/route_cost.h"
 #include "terrain/search_ends.h"
 #include "terrain/search_keys.h"
+#include "terrain/sweep_search.h"
 
 namespace terra {
 namespace {
@@ -14,40 +16,66 @@ struct Query {
   const TerrainMap& map;
   Cell start;
   Cell goal;
-  double upper_bound;
+  const NativeSearchOptions& options;
 };
 
-// Whether keys hold the bound below a path across the map added to any path.
+// Whether keys hold the way across the map at the lowest cost, so that sums of
+// a key below the limit and an octile bound do not overflow.
 template <typename Keys>
-bool HoldsMap(const TerrainMap& map) {
+bool HoldMap(const TerrainMap& map) {
   const double steps = std::max(map.width(), map.height());
   return map.cost_grid().holds_units() &&
          steps * static_cast<double>(Keys(map).min_diagonal()) <
              static_cast<double>(Keys::kLimit);
 }
 
+// Whether a search with these keys is worth starting. A known route's cost
+// settles it; without one narrow keys are tried, and wider ones where the
+// search has met paths beyond them.
+template <typename Keys>
+bool MayHoldResult(const Query& query) {
+  return HoldMap<Keys>(query.map) &&
+         (query.options.upper_bound == kImpassable ||
+          Keys(query.map).KeyAbove(query.options.upper_bound) < Keys::kLimit);
+}
+
+// A* expands few cells where a route is hardly dearer than the empty map's, and
+// vectors of four cells do not make up for the cells it leaves out.
+bool PreferBuckets(const Query& query) {
+  if (query.options.instructions == InstructionSet::kPortable) {
+    return true;
+  }
+  constexpr double kNear = 1.02;
+  const double octile = OctileBound<DoubleKeys>(
+      DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
+  return query.options.upper_bound <= kNear * octile;
+}
+
 }  // namespace
 
 struct NativeSearcher::Workspace {
+  SweepSearch sweep;
   BucketSearch<NarrowKeys> narrow;
   BucketSearch<WideKeys> wide;
   BucketSearch<DoubleKeys> doubles;
 
-  // Searches with one kind of keys. Returns whether that settled the matter:
-  // not when paths were dropped only because such keys do not hold them.
-  template <typename Keys>
-  bool Settle(BucketSearch<Keys>& search, const Query& query,
-              SearchResult& result) {
-    const Keys keys(query.map);
-    const auto bound = keys.KeyAbove(query.upper_bound);
-    auto attempt = search.Run(query.map, keys, query.start, query.goal, bound);
-    result.expanded += attempt.expanded;
-    if (attempt.found) {
-      result.status = SearchStatus::kFound;
-      result.cells = std::move(attempt.cells);
-      result.cost = WalkRoute(query.map, result.cells).cost;
+  SearchAttempt AttemptNarrow(const Query& query) {
+    const SearchMethod method = query.options.method;
+    if (method == SearchMethod::kBuckets ||
+        (method == SearchMethod::kAutomatic && PreferBuckets(query))) {
+      return Attempt(narrow, query);
     }
-    return attempt.found || !attempt.dropped || bound < Keys::kLimit;
+    const NarrowKeys keys(query.map);
+    return sweep.Run(query.map, keys, query.start, query.goal,
+                     keys.KeyAbove(query.options.upper_bound),
+                     query.options.instructions);
+  }
+
+  template <typename Keys>
+  static SearchAttempt Attempt(BucketSearch<Keys>& search, const Query& query) {
+    const Keys keys(query.map);
+    return search.Run(query.map, keys, query.start, query.goal,
+                      keys.KeyAbove(query.options.upper_bound));
   }
 };
 
@@ -69,22 +97,37 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
     result.cells = {start};
     return result;
   }
-  result.status = SearchStatus::kNoRoute;
-  const Query query{map, start, goal, options.upper_bound};
-  const bool settled =
-      (options.keys <= KeyWidth::kNarrow && HoldsMap<NarrowKeys>(map) &&
-       workspace_->Settle(workspace_->narrow, query, result)) ||
-      (options.keys <= KeyWidth::kWide && HoldsMap<WideKeys>(map) &&
-       workspace_->Settle(workspace_->wide, query, result));
-  if (!settled) {
-    workspace_->Settle(workspace_->doubles, query, result);
+  const Query query{map, start, goal, options};
+  SearchAttempt last;
+  last.beyond_keys = true;
+  const auto attempt = [&](SearchAttempt next) {
+    result.expanded += next.expanded;
+    result.passes += next.passes;
+    last = std::move(next);
+  };
+  if (options.keys == KeyWidth::kNarrow && MayHoldResult<NarrowKeys>(query)) {
+    attempt(workspace_->AttemptNarrow(query));
   }
+  if (last.beyond_keys && options.keys != KeyWidth::kDouble &&
+      MayHoldResult<WideKeys>(query)) {
+    attempt(Workspace::Attempt(workspace_->wide, query));
+  }
+  if (last.beyond_keys) {
+    attempt(Workspace::Attempt(workspace_->doubles, query));
+  }
+  if (last.found) {
+    result.cells = std::move(last.cells);
+    result.cost = WalkRoute(map, result.cells).cost;
+  } else {
+    result.status = SearchStatus::kNoRoute;
+  }
+  result.bytes = bytes();
   return result;
 }
 
 std::size_t NativeSearcher::bytes() const {
-  return workspace_->narrow.bytes() + workspace_->wide.bytes() +
-         workspace_->doubles.bytes();
+  return workspace_->sweep.bytes() + workspace_->narrow.bytes() +
+         workspace_->wide.bytes() + workspace_->doubles.bytes();
 }
 
 SearchResult NativeSearch(const TerrainMap& map, Cell start, Cell goal,

@@ -4,13 +4,16 @@
 
 #include "terrain/map.h"
 #include "terrain/search_result.h"
+#include "terrain/sweep_search.h"
 
 namespace terra {
 
 /// How paths are found. All ways find the same costs.
 enum class SearchMethod {
   kAutomatic,  ///< Whichever is expected to be faster.
-  kBuckets,    ///< A* with a bucket queue.
+  kBuckets,    ///< A* with a bucket queue (bucket_search.h).
+  kSweep,      ///< Vectors of cells, row by row (sweep_search.h), where narrow
+               ///< keys hold the result; else A*.
 };
 
 /// The smallest keys (search_keys.h) that a search may add up; it takes wider
@@ -21,12 +24,15 @@ enum class KeyWidth { kNarrow, kWide, kDouble };
 struct NativeSearchOptions {
   /// Cost of a known route between the ends (the baseline's): paths that cannot
   /// be cheaper need not be looked at. A route of exactly this cost is found;
-  /// if there is none of this cost or below, the status is kNoRoute.
+  /// if there is none of this cost or below (up to rounding, 1e-9 of it), the
+  /// status is kNoRoute.
   double upper_bound = kImpassable;
 
   /// For tests and measurements; the defaults are right for everybody else.
   SearchMethod method = SearchMethod::kAutomatic;
   KeyWidth keys = KeyWidth::kNarrow;
+  /// Not wider than BestInstructionSet().
+  InstructionSet instructions = BestInstructionSet();
 };
 
 /// Finds cheapest 8-connected paths on all cells, exactly, one after another in

@@ -17,7 +17,7 @@ namespace terra {
 /// key_of(index) is the key of a cell of the CostGrid, Keys::kLimit where it
 /// has none. A labelled cell other than the start was labelled from a neighbour
 /// whose key can only have fallen since, so keys fall on the way and it ends at
-/// the start.
+/// the start. Keys of which that is not true are a caller's bug and end it too.
 template <typename Keys, typename KeyOf>
 CellPath ExtractPath(const TerrainMap& map, const Keys& keys, Cell start,
                      Cell goal, const KeyOf& key_of) {
@@ -27,6 +27,7 @@ CellPath ExtractPath(const TerrainMap& map, const Keys& keys, Cell start,
   std::size_t ahead = 0;
   while (path.back() != start) {
     const std::size_t index = map.cost_grid().Index(path.back());
+    const Key key = key_of(index);
     const Key straight = keys.Straight(grid.Code(index));
     const Key diagonal = keys.Diagonal(grid.Code(index));
     std::optional<std::size_t> best;
@@ -34,7 +35,7 @@ CellPath ExtractPath(const TerrainMap& map, const Keys& keys, Cell start,
     for (std::size_t turn = 0; turn < kSteps.size(); ++turn) {
       const std::size_t d = (ahead + turn) % kSteps.size();
       const Key before = key_of(grid.Neighbour(index, d));
-      if (before == Keys::kLimit || !grid.MayPassCorner(index, d)) {
+      if (before >= key || !grid.MayPassCorner(index, d)) {
         continue;
       }
       const Key through = before + (d % 2 == 0 ? straight : diagonal);

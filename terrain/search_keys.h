@@ -12,6 +12,10 @@
 
 namespace terra {
 
+/// Upper bounds are widened by this, so that one which is the rounded sum of
+/// a route's 1e7 steps does not exclude the route itself.
+inline constexpr double kAboveRounding = 1 + 1e-9;
+
 /// What searches add up and compare: exact integers in place of costs.
 ///
 /// In the units of an exact legend a path costs a + b sqrt 2 with integers a
@@ -48,7 +52,8 @@ class IntegerKeys {
   /// Returns a key above that of every path of this cost or less; at most
   /// kLimit, where keys end.
   Key KeyAbove(double cost) const {
-    const double key = cost * scale_ * static_cast<double>(kQ) + 2;
+    const double key =
+        cost * kAboveRounding * scale_ * static_cast<double>(kQ) + 2;
     return key < static_cast<double>(kLimit) ? static_cast<Key>(key) : kLimit;
   }
 
@@ -96,10 +101,10 @@ class DoubleKeys {
   Key min_diagonal() const { return min_straight() * std::numbers::sqrt2; }
   Key max_diagonal() const { return max_diagonal_; }
 
-  Key KeyAbove(double cost) const { return cost * (2 - kBelow); }
+  Key KeyAbove(double cost) const { return cost * kAboveRounding; }
 
  private:
-  // Keeps lower bounds below and upper bounds above rounded sums of 1e8 terms.
+  // Keeps lower bounds below rounded sums.
   static constexpr double kBelow = 1 - 1e-12;
 
   std::vector<double> straight_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "terrain/cell.h"
@@ -25,6 +26,8 @@ struct SearchResult {
   CellPath cells;
   /// Work done: cells expanded (or visited by a sweep, each visit counted).
   std::int64_t expanded = 0;
+  int passes = 0;         ///< Over the rows, of a sweep; else 0.
+  std::size_t bytes = 0;  ///< Working memory of a native search.
 
   bool found() const { return status == SearchStatus::kFound; }
 };

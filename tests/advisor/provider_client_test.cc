@@ -79,6 +79,16 @@ TEST_P(EveryProviderTest, AnswerModelAndTokensAreReadFromTheReply) {
   EXPECT_EQ(reply.tries, 1);
 }
 
+TEST_P(EveryProviderTest, TheVersionMayStandAtTheEndOfTheBaseAddress) {
+  ScriptedLlmServer server({Good(GetParam())});
+  const std::string version = GetParam() == "gemini" ? "/v1beta/" : "/v1";
+  Client(GetParam(), server.url() + version)->Ask(Question(), {});
+  Client(GetParam(), server.url())->Ask(Question(), {});
+  const auto seen = server.requests();
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_EQ(seen.front().path, seen.back().path);
+}
+
 TEST_P(EveryProviderTest, RetriesTransientFailuresAtMostThreeTimes) {
   ScriptedLlmServer server({Failing(503, "retry-after-ms", "1")});
   const LlmReply reply = Client(GetParam(), server.url())->Ask(Question(), {});

@@ -41,6 +41,7 @@ FILE_READER = re.compile(r"^planner/graph_file\.(h|cc)$")
 LIBRARIES = {
     "lcm/": ["bus/", "logger/", "lcmtypes/"],
     "curl/": ["advisor/http_transport"],
+    "httplib.h": ["advisor/sim_main"],
     "opencv2/": ["terrain/files/", "advisor/", "benchmark/", "cli/", "logger/"],
     "CLI/": ["bus/", "cli/", "main", "_node", "_options"],
     "CLI11": ["bus/", "cli/", "main"],

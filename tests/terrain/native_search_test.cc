@@ -1,78 +1,19 @@
-#include "terrain/native_search.h"
-
-#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "terrain/builtin_legends.h"
-#include "terrain/reference_search.h"
-#include "terrain/route_cost.h"
-#include "terrain/segment.h"
-#include "tests/support/ascii_map.h"
+#include "terrain/legend.h"
+#include "terrain/map.h"
 #include "tests/support/random_map.h"
+#include "tests/terrain/search_agreement.h"
 
 namespace terra {
 namespace {
 
-using testing::MapFromAscii;
+using testing::AllWaysAgree;
 using testing::Random;
 using testing::RandomMapKind;
-
-// Every way a search can be made, forced one by one.
-struct Way {
-  std::string name;
-  NativeSearchOptions options;
-};
-
-std::vector<Way> AllWays() {
-  std::vector<Way> ways;
-  ways.push_back({"automatic", {}});
-  ways.push_back({"buckets, narrow", {.method = SearchMethod::kBuckets}});
-  ways.push_back({"buckets, wide",
-                  {.method = SearchMethod::kBuckets, .keys = KeyWidth::kWide}});
-  ways.push_back(
-      {"buckets, doubles",
-       {.method = SearchMethod::kBuckets, .keys = KeyWidth::kDouble}});
-  return ways;
-}
-
-// Says whether each way finds what the reference finds: the same cost, on a
-// path of single steps that the cost rule accepts at that cost.
-::testing::AssertionResult AllWaysAgree(const TerrainMap& map, Cell start,
-                                        Cell goal) {
-  const SearchResult want = ReferenceSearch(map, start, goal);
-  for (Way way : AllWays()) {
-    for (const bool bounded : {false, true}) {
-      way.options.upper_bound = bounded ? want.cost : kImpassable;
-      const SearchResult got = NativeSearch(map, start, goal, way.options);
-      const auto fail = [&](const std::string& what) {
-        return ::testing::AssertionFailure()
-               << way.name << (bounded ? ", bounded: " : ": ") << what << ", "
-               << ToString(start) << " to " << ToString(goal) << ", cost "
-               << got.cost << ", reference " << want.cost;
-      };
-      if (got.status != want.status) return fail("another status");
-      if (!want.found()) continue;
-      // Exact units leave no room for another cost.
-      const double tolerance = map.costs().scale != 0 ? 0 : 1e-12 * want.cost;
-      if (std::abs(got.cost - want.cost) > tolerance) return fail("other cost");
-      if (got.cells.front() != start || got.cells.back() != goal) {
-        return fail("other ends");
-      }
-      for (std::size_t i = 1; i < got.cells.size(); ++i) {
-        if (ChebyshevDistance(got.cells[i - 1], got.cells[i]) != 1) {
-          return fail("not a path");
-        }
-      }
-      const RouteWalk walk = WalkRoute(map, got.cells);
-      if (!walk.feasible() || walk.cost != got.cost) {
-        return fail("not what the cost rule says");
-      }
-    }
-  }
-  return ::testing::AssertionSuccess();
-}
 
 CostModel RandomCostModel(Random& random) {
   return CostModel{.corner_cutting = !random.OneIn(3),

@@ -1,0 +1,170 @@
+#include "benchmark/panels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "benchmark/run_description.h"
+#include "planner/coarse_lattice.h"
+#include "terrain/files/picture.h"
+#include "terrain/segment.h"
+
+namespace terra::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+cv::Scalar Bgr(Color color) {
+  return {double(color.b), double(color.g), double(color.r)};
+}
+
+cv::Mat TerrainImage(const TerrainMap& map) {
+  std::array<cv::Vec3b, 256> colors{};
+  for (const Terrain& terrain : map.legend().terrains()) {
+    const Color c = terrain.color;
+    colors[static_cast<std::size_t>(terrain.id)] = {c.b, c.g, c.r};
+  }
+  cv::Mat image(map.height(), map.width(), CV_8UC3);
+  for (int y = 0; y < map.height(); ++y) {
+    auto* row = image.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < map.width(); ++x) row[x] = colors[map.ids()(y, x)];
+  }
+  return image;
+}
+
+void DrawGrid(cv::Mat& image, int stride) {
+  const cv::Scalar gray(170, 170, 170);
+  for (int x = 0; x < image.cols; x += stride) {
+    cv::line(image, {x, 0}, {x, image.rows - 1}, gray);
+  }
+  for (int y = 0; y < image.rows; y += stride) {
+    cv::line(image, {0, y}, {image.cols - 1, y}, gray);
+  }
+}
+
+void DrawRoute(cv::Mat& image, const Route& route, Color color) {
+  std::vector<cv::Point> points;
+  for (const Cell cell : RasterizeRoute(route)) {
+    points.emplace_back(cell.x, cell.y);
+  }
+  cv::polylines(image, points, false, cv::Scalar::all(255), 7, cv::LINE_AA);
+  cv::polylines(image, points, false, Bgr(color), 3, cv::LINE_AA);
+}
+
+void DrawEnd(cv::Mat& image, Cell cell, const char* letter) {
+  const cv::Point center(cell.x, cell.y);
+  cv::circle(image, center, 10, cv::Scalar::all(255), cv::FILLED, cv::LINE_AA);
+  cv::circle(image, center, 10, cv::Scalar::all(0), 2, cv::LINE_AA);
+  cv::putText(image, letter, center + cv::Point(-5, 5),
+              cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar::all(0), 1,
+              cv::LINE_AA);
+}
+
+// A case that may be shown, and what was gained.
+struct Candidate {
+  double gain = 0;
+  std::string case_id;
+};
+
+// At even distances from the largest gain to the smallest.
+std::vector<Candidate> Spread(std::vector<Candidate> all, int wanted) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     return a.gain > b.gain;
+                   });
+  std::vector<Candidate> chosen;
+  const std::size_t count =
+      std::min(all.size(), static_cast<std::size_t>(wanted));
+  for (std::size_t i = 0; i < count; ++i) {
+    chosen.push_back(std::move(all[i * all.size() / count]));
+  }
+  return chosen;
+}
+
+std::string Caption(const CaseResult& r) {
+  std::array<char, 160> text{};
+  const double gain = 100 * (r.baseline_cost - r.final_cost) / r.baseline_cost;
+  std::snprintf(text.data(), text.size(),
+                ": baseline %.1f, deployed %.1f (-%.1f %%), optimum %.1f",
+                r.baseline_cost, r.final_cost, gain, r.oracle_cost);
+  return r.case_id + text.data();
+}
+
+Result<Panel> MakePanel(const Dataset& dataset, const CaseResult& result,
+                        int stride) {
+  const DatasetCase* c = dataset.Find(result.case_id);
+  if (c == nullptr) {
+    return Error{ErrorCode::kInvalid,
+                 dataset.folder + ": has no case " + result.case_id};
+  }
+  const Result<TerrainMap> map = ReadCaseMap(dataset, *c);
+  if (!map.ok()) return map.error();
+  planner::LatticeOptions lattice;
+  lattice.stride = stride;
+  const Route baseline =
+      planner::PlanOnLattice(*map, c->start, c->goal, lattice).waypoints;
+  return Panel{Caption(result),
+               DrawPanelPng(*map, baseline, result.final_route, stride)};
+}
+
+}  // namespace
+
+std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
+                         const Route& final_route, int stride) {
+  cv::Mat image = TerrainImage(map);
+  DrawGrid(image, stride);
+  if (!baseline.empty()) DrawRoute(image, baseline, kBaselineColor);
+  if (!final_route.empty() && final_route != baseline) {
+    DrawRoute(image, final_route, kCandidateColor);
+  }
+  if (!baseline.empty()) {
+    DrawEnd(image, baseline.front(), "S");
+    DrawEnd(image, baseline.back(), "G");
+  }
+  std::vector<unsigned char> png;
+  cv::imencode(".png", image, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return {png.begin(), png.end()};
+}
+
+Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
+                                      const Dataset& dataset, int per_group) {
+  const Result<RunDescription> run =
+      ReadRunDescription((fs::path(run_folder) / "run.json").string());
+  if (!run.ok()) return run.error();
+  const std::string path = (fs::path(run_folder) / "results.csv").string();
+  // Twice through the file, so that only the chosen routes are kept.
+  std::map<std::string, std::vector<Candidate>> groups;
+  const Status ranked = ReadResults(path, [&](const CaseResult& r) {
+    if (r.code != verifier::Code::kAccepted || r.repeat != 0) return;
+    const double gain = (r.baseline_cost - r.final_cost) / r.baseline_cost;
+    groups[r.group].push_back({gain, r.case_id});
+  });
+  if (!ranked.ok()) return ranked.error();
+  std::map<std::string, CaseResult> chosen;
+  for (auto& [group, all] : groups) {
+    for (const Candidate& candidate : Spread(std::move(all), per_group)) {
+      chosen.emplace(candidate.case_id, CaseResult{});
+    }
+  }
+  const Status read = ReadResults(path, [&](const CaseResult& r) {
+    const auto found = chosen.find(r.case_id);
+    if (found != chosen.end() && r.repeat == 0) found->second = r;
+  });
+  if (!read.ok()) return read.error();
+  std::vector<Panel> panels;
+  for (const auto& [id, result] : chosen) {
+    Result<Panel> panel = MakePanel(dataset, result, run->stride);
+    if (!panel.ok()) return panel.error();
+    panels.push_back(*std::move(panel));
+  }
+  return panels;
+}
+
+}  // namespace terra::benchmark

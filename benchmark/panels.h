@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmark/case_result.h"
+#include "terrain/cell.h"
+#include "terrain/files/dataset.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra::benchmark {
+
+/// A picture of one case for people.
+struct Panel {
+  std::string caption;
+  std::string png;
+};
+
+/// Draws a map with the grey lattice, the baseline in blue and, when there is
+/// one, the final route in green, both with a light edge; start and goal as
+/// discs. One pixel a cell.
+std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
+                         const Route& final_route, int stride);
+
+/// Pictures of `per_group` cases of each group of a run: the ones at even
+/// distances in the order of what was gained, the largest gain first.
+/// Errors: the run or a map cannot be read.
+Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
+                                      const Dataset& dataset, int per_group);
+
+}  // namespace terra::benchmark

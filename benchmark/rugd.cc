@@ -1,0 +1,293 @@
+#include "benchmark/rugd.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "advisor/encoding.h"
+#include "benchmark/generate_dataset.h"
+#include "benchmark/integer_random.h"
+#include "benchmark/parallel.h"
+#include "benchmark/progress.h"
+#include "planner/coarse_lattice.h"
+#include "terrain/builtin_legends.h"
+#include "terrain/digest.h"
+#include "terrain/files/csv.h"
+#include "terrain/files/dataset.h"
+#include "terrain/files/legend_file.h"
+#include "terrain/files/map_file.h"
+#include "terrain/files/whole_file.h"
+
+namespace terra::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The components of passable cells, 8-connected: a label per cell, 0 = blocked.
+using Labels =
+    Eigen::Array<std::int32_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+void FloodFill(const TerrainMap& map, Cell from, std::int32_t label,
+               Labels& labels) {
+  std::vector<Cell> open = {from};
+  labels(from.y, from.x) = label;
+  while (!open.empty()) {
+    const Cell cell = open.back();
+    open.pop_back();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell next{cell.x + dx, cell.y + dy};
+        if (!map.Contains(next) || !map.Passable(next) ||
+            labels(next.y, next.x) != 0) {
+          continue;
+        }
+        labels(next.y, next.x) = label;
+        open.push_back(next);
+      }
+    }
+  }
+}
+
+Labels LabelComponents(const TerrainMap& map) {
+  Labels labels = Labels::Zero(map.height(), map.width());
+  std::int32_t count = 0;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      if (map.Passable({x, y}) && labels(y, x) == 0) {
+        FloodFill(map, {x, y}, ++count, labels);
+      }
+    }
+  }
+  return labels;
+}
+
+std::uint64_t FrameSeed(std::uint64_t seed, const std::string& name) {
+  // FNV-1a over the name (Fowler, Noll, Vo), scrambled with the seed.
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : name) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return IntegerRandom::Mix(hash ^ IntegerRandom::Mix(seed));
+}
+
+bool FarEnough(Cell a, Cell b) {
+  const std::int64_t dx = a.x - b.x;
+  const std::int64_t dy = a.y - b.y;
+  return dx * dx + dy * dy >= kRugdEndDistance * kRugdEndDistance;
+}
+
+bool HasLatticeRoute(const TerrainMap& map, Cell start, Cell goal) {
+  planner::LatticeOptions options;
+  options.stride = kRugdStride;
+  return planner::PlanOnLattice(map, start, goal, options).found();
+}
+
+// What became of a frame.
+struct Converted {
+  std::optional<RugdEnds> ends;
+  std::string reason;
+  std::int64_t map_id = 0;
+};
+
+Result<Converted> ConvertFrame(const RugdFrame& frame,
+                               const RugdOptions& options) {
+  MapFileOptions read;
+  read.legend = "rugd";
+  const Result<MapFile> file = ReadMap(frame.path, read);
+  if (!file.ok()) return file.error();
+  RugdDraw draw = DrawRugdEnds(file->map, options.seed, frame.name);
+  Converted converted{draw.ends, std::move(draw.reason), MapId(file->map)};
+  if (!converted.ends) return converted;
+  const fs::path path = fs::path(options.out) / "maps" / (frame.name + ".png");
+  const Status written = WriteIdPng(file->map, path.string());
+  if (!written.ok()) return written.error();
+  return converted;
+}
+
+DatasetCase CaseOf(const RugdFrame& frame, const RugdEnds& ends) {
+  return {frame.name,  "maps/" + frame.name + ".png", ends.start, ends.goal,
+          frame.group, {{"sequence", frame.sequence}}};
+}
+
+std::string Card() {
+  return "# RUGD cost rasters\n\nDerived from the annotation masks of RUGD "
+         "(Wigness et al., A RUGD Dataset for Autonomous Navigation and Visual "
+         "Perception in Unstructured Outdoor Environments, IROS 2019). RUGD "
+         "states no licence: **derived, do not redistribute**.\n\nMaps are "
+         "8-bit PNGs of RUGD class ids; costs in `legend.csv` are the paper's, "
+         "void is impassable (this project's choice). One start and goal per "
+         "frame from hash(seed, frame name): in one passable component, at "
+         "least 100 cells apart, joined by a lattice route of stride 50. "
+         "Frames without such a pair are in `skipped.csv` with the reason.\n";
+}
+
+struct Tables {
+  std::vector<DatasetCase> cases;
+  std::string skipped = CsvLine({"frame", "reason"});
+  std::string digest_lines;
+  std::map<std::string, RugdCount> counts;
+};
+
+Tables MakeTables(const std::vector<RugdFrame>& frames,
+                  const std::vector<Converted>& converted) {
+  Tables tables;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    RugdCount& count = tables.counts[frames[i].group];
+    count.group = frames[i].group;
+    ++count.frames;
+    if (!converted[i].ends) {
+      tables.skipped += CsvLine({frames[i].name, converted[i].reason});
+      continue;
+    }
+    ++count.used;
+    const RugdEnds& ends = *converted[i].ends;
+    tables.cases.push_back(CaseOf(frames[i], ends));
+    tables.digest_lines +=
+        DigestLine(frames[i].name, converted[i].map_id, ends.start, ends.goal);
+  }
+  return tables;
+}
+
+std::string DatasetJson(const RugdOptions& options, const Tables& tables) {
+  nlohmann::ordered_json json = {
+      {"name", "rugd"},
+      {"version", "1"},
+      {"notice", "derived from RUGD, do not redistribute"},
+      {"seed", options.seed},
+      {"draws", kRugdDraws},
+      {"end_distance", kRugdEndDistance},
+      {"stride_with_a_route", kRugdStride}};
+  for (const auto& [group, count] : tables.counts) {
+    json["groups"][group] = {{"frames", count.frames}, {"used", count.used}};
+  }
+  json["digest"] = advisor::Sha256Hex(tables.digest_lines);
+  return json.dump(2) + "\n";
+}
+
+Status WriteTables(const RugdOptions& options, const Tables& tables) {
+  const fs::path out(options.out);
+  const Status legend =
+      WriteLegend(RugdLegend(), (out / "legend.csv").string());
+  if (!legend.ok()) return legend.error();
+  const std::pair<const char*, std::string> files[] = {
+      {"dataset.json", DatasetJson(options, tables)},
+      {"skipped.csv", tables.skipped},
+      {"README.md", Card()}};
+  for (const auto& [name, content] : files) {
+    const Status written = WriteWholeFile((out / name).string(), content);
+    if (!written.ok()) return written.error();
+  }
+  return WriteCases(tables.cases, (out / "cases.csv").string());
+}
+
+Status PrepareFolder(const fs::path& out) {
+  if (fs::exists(out / "cases.csv")) {
+    return Error{ErrorCode::kInvalid,
+                 out.string() +
+                     " holds a dataset already; choose another "
+                     "folder or remove it"};
+  }
+  std::error_code failed;
+  fs::create_directories(out / "maps", failed);
+  if (!failed) return Done{};
+  return Error{ErrorCode::kUnavailable, out.string() + ": " + failed.message()};
+}
+
+}  // namespace
+
+Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder) {
+  std::map<std::string, RugdFrame> frames;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator it(folder, failed), end;
+       !failed && it != end; it.increment(failed)) {
+    const std::string name = it->path().stem().string();
+    const std::size_t last = name.rfind('_');
+    if (it->path().extension() != ".png" || last == std::string::npos) continue;
+    const RugdFrame frame{it->path().string(), name, name.substr(0, last),
+                          name.substr(0, name.find_first_of("-_"))};
+    if (!frames.emplace(name, frame).second) {
+      return Error{ErrorCode::kInvalid,
+                   folder + ": frame " + name + " stands there twice"};
+    }
+  }
+  if (failed || frames.empty()) {
+    return Error{ErrorCode::kNotFound,
+                 folder + ": no RUGD masks (SCENE_NNNNN.png) below it"};
+  }
+  std::vector<RugdFrame> sorted;
+  for (auto& [name, frame] : frames) sorted.push_back(std::move(frame));
+  return sorted;
+}
+
+RugdDraw DrawRugdEnds(const TerrainMap& map, std::uint64_t seed,
+                      const std::string& frame_name) {
+  const Labels labels = LabelComponents(map);
+  std::vector<Cell> passable;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      if (labels(y, x) != 0) passable.push_back({x, y});
+    }
+  }
+  if (passable.empty()) return {std::nullopt, "no passable cell"};
+  IntegerRandom random(FrameSeed(seed, frame_name));
+  const auto last = static_cast<int>(passable.size()) - 1;
+  const auto draw = [&] {
+    return passable[static_cast<std::size_t>(random.In(0, last))];
+  };
+  int apart = 0;
+  int close = 0;
+  for (int i = 0; i < kRugdDraws; ++i) {
+    const Cell start = draw();
+    const Cell goal = draw();
+    if (labels(start.y, start.x) != labels(goal.y, goal.x)) {
+      ++apart;
+    } else if (!FarEnough(start, goal)) {
+      ++close;
+    } else if (HasLatticeRoute(map, start, goal)) {
+      return {RugdEnds{start, goal}, ""};
+    }
+  }
+  const int no_route = kRugdDraws - apart - close;
+  return {std::nullopt,
+          std::to_string(kRugdDraws) + " draws: " + std::to_string(apart) +
+              " in different components, " + std::to_string(close) +
+              " too close, " + std::to_string(no_route) +
+              " without a lattice route"};
+}
+
+Result<std::vector<RugdCount>> ConvertRugd(const RugdOptions& options) {
+  const auto frames = FindRugdFrames(options.annotations);
+  if (!frames.ok()) return frames.error();
+  const Status prepared = PrepareFolder(options.out);
+  if (!prepared.ok()) return prepared.error();
+  std::vector<Converted> converted(frames->size());
+  std::optional<Error> failure;
+  std::mutex mutex;
+  const auto count = static_cast<std::int64_t>(frames->size());
+  Progress progress("rugd", count);
+  ParallelFor(count, options.jobs, [&](std::int64_t i) {
+    const auto index = static_cast<std::size_t>(i);
+    Result<Converted> one = ConvertFrame((*frames)[index], options);
+    progress.Advance();
+    const std::scoped_lock lock(mutex);
+    if (one.ok()) {
+      converted[index] = *std::move(one);
+    } else if (!failure) {
+      failure = one.error();
+    }
+  });
+  if (failure) return *failure;
+  const Tables tables = MakeTables(*frames, converted);
+  const Status written = WriteTables(options, tables);
+  if (!written.ok()) return written.error();
+  std::vector<RugdCount> counts;
+  for (const auto& [group, one] : tables.counts) counts.push_back(one);
+  return counts;
+}
+
+}  // namespace terra::benchmark

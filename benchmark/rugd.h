@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "terrain/cell.h"
+#include "terrain/map.h"
+#include "terrain/result.h"
+
+namespace terra::benchmark {
+
+/// How RUGD masks become a dataset.
+struct RugdOptions {
+  /// The official archive (SCENE/SCENE_NNNNN.png) or a flat folder of masks.
+  std::string annotations;
+  std::string out;
+  std::uint64_t seed = 0;
+  int jobs = 0;  ///< 0 = all cores.
+};
+
+/// How ends are chosen (PROTOCOL, Cases; the paper leaves it open).
+inline constexpr int kRugdDraws = 200;
+inline constexpr int kRugdEndDistance = 100;  ///< Cells, Euclidean.
+inline constexpr int kRugdStride = 50;  ///< A lattice route must exist at it.
+
+/// A frame's name in parts: "trail-10_00001" is frame 00001 of sequence
+/// trail-10 in group trail.
+struct RugdFrame {
+  std::string path;      ///< Of the mask.
+  std::string name;      ///< Without extension.
+  std::string sequence;  ///< Up to the last underscore.
+  std::string group;     ///< Up to the first `-` or `_`.
+};
+
+/// Returns the masks below a folder in order of their names; none for other
+/// files. A name that stands twice is an error.
+Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder);
+
+struct RugdEnds {
+  Cell start;
+  Cell goal;
+};
+
+/// Draws start and goal from hash(seed, frame name) alone: both in one
+/// 8-connected passable component, kRugdEndDistance apart, joined by a lattice
+/// route. Absent, with a reason, when kRugdDraws tries find none.
+struct RugdDraw {
+  std::optional<RugdEnds> ends;
+  std::string reason;
+};
+RugdDraw DrawRugdEnds(const TerrainMap& map, std::uint64_t seed,
+                      const std::string& frame_name);
+
+/// What came of it, per group.
+struct RugdCount {
+  std::string group;
+  std::int64_t frames = 0;
+  std::int64_t used = 0;
+};
+
+/// Writes the dataset: id maps, cases.csv (with group and sequence),
+/// legend.csv, dataset.json, skipped.csv (frame, reason) and README.md.
+/// Errors: a colour that RUGD does not have (named with its pixel), no masks, a
+/// folder that holds a dataset already.
+Result<std::vector<RugdCount>> ConvertRugd(const RugdOptions& options);
+
+}  // namespace terra::benchmark

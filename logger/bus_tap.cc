@@ -1,0 +1,148 @@
+#include "logger/bus_tap.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include <lcm/lcm.h>
+#include <sys/eventfd.h>
+
+#include "bus/envelope.h"
+#include "bus/lcm_url.h"
+#include "logger/log_event.h"
+
+namespace terra::logger {
+namespace {
+
+constexpr std::int64_t kReceiveBuffer = std::int64_t{16} << 20;
+constexpr int kLcmQueueCapacity = 20'000;
+constexpr std::size_t kDatagramsPerTurn = 256;
+// liblcm sends itself this once, to see whether multicast works.
+constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
+
+// liblcm complains loudly about a size that the kernel does not give.
+std::int64_t LargestReceiveBuffer() {
+  std::int64_t limit = 0;
+  std::ifstream("/proc/sys/net/core/rmem_max") >> limit;
+  return std::min(limit, kReceiveBuffer);
+}
+
+std::int64_t MonotonicMicroseconds() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+Error Unusable(const std::string& url, const std::string& why) {
+  return Error{ErrorCode::kUnavailable,
+               "cannot hear the bus " + url + ": " + why};
+}
+
+}  // namespace
+
+std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
+  constexpr std::string_view kOption = "recv_buf_size=";
+  if (!url.starts_with("udpm://")) return url;
+  const std::size_t at = url.find(kOption);
+  if (at == std::string::npos) {
+    return url + (url.find('?') == std::string::npos ? '?' : '&') +
+           std::string(kOption) + std::to_string(bytes);
+  }
+  const std::size_t begin = at + kOption.size();
+  const std::size_t end = std::min(url.find('&', begin), url.size());
+  if (std::atoll(url.c_str() + begin) >= bytes) return url;
+  return url.substr(0, begin) + std::to_string(bytes) + url.substr(end);
+}
+
+Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
+                                             const std::string& advice_channel,
+                                             EventQueue& queue) {
+  lcm_t* lcm = lcm_create(
+      WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()).c_str());
+  if (lcm == nullptr) return Unusable(urls.deployed, "LCM refuses it");
+  std::unique_ptr<BusTap> tap(new BusTap(queue, lcm, eventfd(0, EFD_CLOEXEC)));
+  if (tap->stop_fd_ < 0) return Unusable(urls.deployed, std::strerror(errno));
+  lcm_subscription_t* subscribed =
+      lcm_subscribe(lcm, ".*", &BusTap::OnMessage, tap.get());
+  if (subscribed == nullptr || lcm_get_fileno(lcm) < 0) {
+    return Unusable(urls.deployed,
+                    "what is sent does not come back (a firewall?)");
+  }
+  lcm_subscription_set_queue_capacity(subscribed, kLcmQueueCapacity);
+  if (urls.advice != urls.deployed && urls.advice.starts_with("udpm://")) {
+    auto opened = bus::AdviceReceiver::Open(urls.advice, advice_channel);
+    if (!opened) return opened.error();
+    tap->advice_.emplace(*std::move(opened));
+  }
+  tap->thread_ = std::thread([listening = tap.get()] {
+    listening->Listen();
+  });
+  return tap;
+}
+
+BusTap::BusTap(EventQueue& queue, _lcm_t* lcm, int stop_fd)
+    : queue_(queue), lcm_(lcm), stop_fd_(stop_fd) {}
+
+BusTap::~BusTap() {
+  if (thread_.joinable()) {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t n = write(stop_fd_, &one, sizeof one);
+    thread_.join();
+  }
+  if (stop_fd_ >= 0) close(stop_fd_);
+  lcm_destroy(lcm_);
+}
+
+void BusTap::OnMessage(const lcm_recv_buf_t* buffer, const char* channel,
+                       void* tap) noexcept {
+  auto& self = *static_cast<BusTap*>(tap);
+  if (channel == kSelfTest) return;
+  // A datagram without an end of its channel name shows as a huge size; a name
+  // that is not one word would be taken for damage in the log.
+  const std::string_view name(channel);
+  if (buffer->data_size > kMaxLogData || !IsLogChannel(name)) {
+    ++self.counters_.refused;
+    return;
+  }
+  ++self.counters_.heard;
+  self.queue_.Push(
+      bus::UnixMicroseconds(), name,
+      {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+}
+
+// THREADING: the one thread that handles this LCM object and the advice socket.
+// It copies messages into the queue, stamped with the time, and never writes.
+void BusTap::Listen() {
+  std::array<pollfd, 3> waited = {
+      pollfd{stop_fd_, POLLIN, 0}, pollfd{lcm_get_fileno(lcm_), POLLIN, 0},
+      pollfd{advice_ ? advice_->fd() : -1, POLLIN, 0}};
+  while (true) {
+    if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
+    if (waited[0].revents != 0) return;
+    if (waited[1].revents != 0) lcm_handle(lcm_);
+    if (waited[2].revents != 0) DrainAdvice();
+  }
+}
+
+void BusTap::DrainAdvice() {
+  advice_->Drain(MonotonicMicroseconds(), kDatagramsPerTurn,
+                 [this](const bus::LcmDatagram& datagram, bus::SenderAddress) {
+                   ++counters_.heard;
+                   queue_.Push(bus::UnixMicroseconds(), datagram.channel,
+                               datagram.payload);
+                 });
+  const auto copy = [](std::atomic<std::int64_t>& to, std::uint64_t from) {
+    to = static_cast<std::int64_t>(from);
+  };
+  copy(counters_.advice_over_limit, advice_->counters().over_limit);
+  copy(counters_.advice_malformed, advice_->counters().malformed);
+  copy(counters_.advice_lost_in_kernel, advice_->counters().lost_in_kernel);
+}
+
+}  // namespace terra::logger

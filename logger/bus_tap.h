@@ -1,0 +1,70 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "bus/advice_receiver.h"
+#include "logger/event_queue.h"
+#include "terrain/result.h"
+
+struct _lcm_t;
+struct _lcm_recv_buf_t;
+
+namespace terra::logger {
+
+/// Hears every channel of the deployed bus, the project's or not, and ADVICE
+/// of the advice bus through the bounded receiver.
+///
+/// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), room
+///         for a burst of 20,000 messages behind it, then the EventQueue.
+/// Threads: one of its own fills the queue and does nothing else; the counts
+///          may be read from any.
+class BusTap {
+ public:
+  struct Urls {
+    std::string deployed;
+    std::string advice;  ///< The same as deployed: it is opened once.
+  };
+  struct Counters {
+    std::atomic<std::int64_t> heard{0};
+    std::atomic<std::int64_t> refused{0};
+    std::atomic<std::int64_t> advice_over_limit{0};
+    std::atomic<std::int64_t> advice_malformed{0};
+    std::atomic<std::int64_t> advice_lost_in_kernel{0};
+  };
+
+  /// The queue must outlive the tap.
+  /// Errors: a bus that cannot be heard, with what to do about it.
+  static Result<std::unique_ptr<BusTap>> Open(const Urls& urls,
+                                              const std::string& advice_channel,
+                                              EventQueue& queue);
+  ~BusTap();
+  BusTap(const BusTap&) = delete;
+  BusTap& operator=(const BusTap&) = delete;
+
+  const Counters& counters() const { return counters_; }
+
+ private:
+  BusTap(EventQueue& queue, _lcm_t* lcm, int stop_fd);
+  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
+                        void* tap) noexcept;
+  void Listen();
+  void DrainAdvice();
+
+  EventQueue& queue_;
+  _lcm_t* lcm_;
+  int stop_fd_;
+  std::optional<bus::AdviceReceiver> advice_;
+  Counters counters_;
+  std::thread thread_;
+};
+
+/// Returns the URL with a recv_buf_size of at least `bytes`; other URLs than
+/// udpm:// as they are.
+std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes);
+
+}  // namespace terra::logger

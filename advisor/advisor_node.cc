@@ -1,13 +1,8 @@
 #include "advisor/advisor_node.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <exception>
+#include <chrono>
 #include <utility>
-
-#include <sys/resource.h>
-#include <sys/syscall.h>
 
 #include "bus/codec.h"
 #include "terrain/route_cost.h"
@@ -17,6 +12,17 @@ namespace {
 
 using terra_msg::advice_t;
 using terra_msg::baseline_t;
+using terra_msg::deployed_t;
+using terra_msg::pose_t;
+using terra_msg::verdict_t;
+
+// Advice that came too late is not worked out again sooner, so that two views
+// of what is deployed make no storm.
+constexpr bus::Duration kAgainAfter = std::chrono::seconds(1);
+
+double Seconds(bus::Duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 
 // Cuts text to what its message may carry.
 std::string Limited(std::string text, std::size_t max_bytes) {
@@ -26,11 +32,14 @@ std::string Limited(std::string text, std::size_t max_bytes) {
 
 advice_t ToMessage(const AdviceWorker::Job& job, const AdviceAnswer& answer) {
   advice_t message{};
-  message.request_id = job.baseline.request_id;
-  message.map_id = job.baseline.map_id;
-  message.baseline_digest = job.baseline.baseline_digest;
-  message.anchor_x = job.baseline.start_x;
-  message.anchor_y = job.baseline.start_y;
+  message.request_id = job.request_id;
+  message.map_id = job.map_id;
+  message.baseline_digest = job.baseline_digest;
+  message.anchor_session = job.anchor.session;
+  message.anchor_route_seq = job.anchor.route_seq;
+  message.anchor_index = job.anchor.index;
+  message.anchor_x = job.anchor.cell.x;
+  message.anchor_y = job.anchor.cell.y;
   message.model = Limited(answer.model, bus::kMaxNameBytes);
   message.kind = static_cast<std::int8_t>(answer.kind);
   message.form = static_cast<std::int8_t>(answer.form);
@@ -45,97 +54,7 @@ advice_t ToMessage(const AdviceWorker::Job& job, const AdviceAnswer& answer) {
   return message;
 }
 
-// The deployed path goes first where cores are few: measured on two, baselines
-// waited 4 ms behind a search of normal priority.
-void LowerOwnPriority() {
-  constexpr int kNice = 10;
-  // Without effect where it is refused; then the work is done all the same.
-  static_cast<void>(::setpriority(
-      PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kNice));
-}
-
 }  // namespace
-
-// THREADING: one worker thread runs Backend::Advise. It shares with the acting
-// thread only the members under mutex_: one job waiting (a newer one takes its
-// place), one answer. `current_` is replaced with every job, so a stop request
-// reaches the job it was meant for and no other.
-AdviceWorker::AdviceWorker(std::unique_ptr<Backend> backend,
-                           std::function<void()> ready)
-    : backend_(std::move(backend)),
-      ready_(std::move(ready)),
-      thread_([this](std::stop_token end) {
-        LowerOwnPriority();
-        Work(end);
-      }) {}
-
-void AdviceWorker::Start(Job job) {
-  const std::lock_guard lock(mutex_);
-  current_.request_stop();
-  done_.reset();
-  waiting_ = std::move(job);
-  changed_.notify_all();
-}
-
-void AdviceWorker::Cancel() {
-  const std::lock_guard lock(mutex_);
-  current_.request_stop();
-  waiting_.reset();
-  done_.reset();
-}
-
-std::optional<AdviceWorker::Done> AdviceWorker::Take() {
-  const std::lock_guard lock(mutex_);
-  return std::exchange(done_, std::nullopt);
-}
-
-bool AdviceWorker::busy() const {
-  const std::lock_guard lock(mutex_);
-  return busy_ || waiting_.has_value();
-}
-
-void AdviceWorker::Work(std::stop_token end) {
-  // Ends a call that is still running when the process ends.
-  const std::stop_callback stop_current(end, [this] {
-    const std::lock_guard lock(mutex_);
-    current_.request_stop();
-  });
-  while (!end.stop_requested()) {
-    Job job;
-    std::stop_token stop;
-    {
-      std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, end, [this] {
-            return waiting_.has_value();
-          })) {
-        return;
-      }
-      job = *std::exchange(waiting_, std::nullopt);
-      current_ = std::stop_source();
-      stop = current_.get_token();
-      busy_ = true;
-    }
-    AdviceAnswer answer;
-    try {
-      answer = backend_->Advise(
-          AdviceTask{job.map->map, job.baseline.map_id, job.baseline.request_id,
-                     Cell{job.baseline.start_x, job.baseline.start_y},
-                     Cell{job.baseline.goal_x, job.baseline.goal_y}, job.route,
-                     job.baseline_cost},
-          stop);
-    } catch (const std::exception& error) {
-      answer = AdviceAnswer{};
-      answer.error = error.what();
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      busy_ = false;
-      if (stop.stop_requested()) continue;
-      done_ = Done{std::move(job), std::move(answer)};
-    }
-    ready_();
-  }
-}
 
 AdvisorNode::AdvisorNode(std::string name, std::unique_ptr<Backend> backend,
                          bus::Outbox& out, bus::Outbox& advice,
@@ -143,19 +62,30 @@ AdvisorNode::AdvisorNode(std::string name, std::unique_ptr<Backend> backend,
     : name_(std::move(name)),
       advice_(advice),
       map_(out),
+      answer_time_(backend->usual_seconds()),
       worker_(std::move(backend), std::move(wake)) {
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
-    if (map_.OnHeader(message, now)) Begin();
+    if (message.cell_size_m > 0) cell_size_m_ = message.cell_size_m;
+    if (map_.OnHeader(message, now)) Begin(now);
   });
   Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
-    if (map_.OnTiles(message, now)) Begin();
+    if (map_.OnTiles(message, now)) Begin(now);
   });
-  Listen<baseline_t>([this](const auto& message, bus::Time) {
-    OnBaseline(message);
+  Listen<baseline_t>([this](const auto& message, bus::Time now) {
+    OnBaseline(message, now);
+  });
+  Listen<deployed_t>([this](const auto& message, bus::Time now) {
+    OnDeployed(message, now);
+  });
+  Listen<pose_t>([this](const auto& message, bus::Time now) {
+    OnPose(message, now);
+  });
+  Listen<verdict_t>([this](const auto& message, bus::Time now) {
+    OnVerdict(message, now);
   });
 }
 
-void AdvisorNode::OnBaseline(const baseline_t& message) {
+void AdvisorNode::OnBaseline(const baseline_t& message, bus::Time now) {
   if (!planner_.Accept(message.session, message.seq)) return;
   const bool same = message.request_id == baseline_.request_id &&
                     message.map_id == baseline_.map_id &&
@@ -163,27 +93,92 @@ void AdvisorNode::OnBaseline(const baseline_t& message) {
                     message.baseline_digest == baseline_.baseline_digest;
   if (same) return;
   baseline_ = message;
-  Begin();
+  Begin(now);
+}
+
+void AdvisorNode::OnDeployed(const deployed_t& message, bus::Time now) {
+  if (!gate_.Accept(message.session, message.seq)) return;
+  anchors_.OnDeployed({message.session, message.route_seq, message.request_id,
+                       message.map_id, bus::WaypointsOf(message)});
+  FollowRobot(now);
+}
+
+void AdvisorNode::OnPose(const pose_t& message, bus::Time now) {
+  anchors_.OnPose(message.deployed_session, message.deployed_route_seq,
+                  {message.pose_x, message.pose_y},
+                  message.speed_mps / cell_size_m_,
+                  Seconds(now.time_since_epoch()));
+  FollowRobot(now);
+}
+
+void AdvisorNode::OnVerdict(const verdict_t& message, bus::Time now) {
+  const bool own = message.subject == verdict_t::SUBJECT_ADVICE &&
+                   message.advisor == name_ &&
+                   message.advisor_session == advice_.session() &&
+                   message.attempt == jobs_;
+  if (!own || message.code != verdict_t::CODE_LATE) return;
+  if (work_ != Work::kAnswered || again_at_ != bus::kNever) return;
+  again_at_ = now + kAgainAfter;
+}
+
+// The robot may have become ready for a proposal, or passed its anchor.
+void AdvisorNode::FollowRobot(bus::Time now) {
+  if (work_ == Work::kWaiting) {
+    Begin(now);
+  } else if (work_ == Work::kRunning &&
+             !anchors_.InForce(anchor_, baseline_.request_id)) {
+    ++passed_;
+    answer_time_.AtLeast(Seconds(now - began_));
+    Begin(now);
+  }
 }
 
 // Starts on the baseline in hand, if there is a map and a route to improve.
-void AdvisorNode::Begin() {
+void AdvisorNode::Begin(bus::Time now) {
   worker_.Cancel();
   current_.clear();
+  work_ = Work::kNone;
+  again_at_ = bus::kNever;
   if (!map_.map() || baseline_.map_id != map_.map_id() ||
       baseline_.status != baseline_t::STATUS_OK) {
     return;
   }
-  Route route = bus::WaypointsOf(baseline_);
+  const auto anchor = anchors_.Choose(
+      {baseline_.request_id, baseline_.map_id,
+       Cell{baseline_.start_x, baseline_.start_y}, answer_time_.seconds(),
+       Seconds(now.time_since_epoch())});
+  if (!anchor) {
+    work_ = Work::kWaiting;
+    return;
+  }
+  StartFrom(*anchor, now);
+}
+
+void AdvisorNode::StartFrom(const Anchor& anchor, bus::Time now) {
+  const bus::MapPtr& map = map_.map();
+  Route route = anchor.index == 0 ? bus::WaypointsOf(baseline_)
+                                  : anchors_.RouteFrom(anchor);
   if (route.size() < 2) return;
-  const double cost = WalkRoute(map_.map()->map, route, bus::kMaxSteps).cost;
+  const double cost = WalkRoute(map->map, route, bus::kMaxSteps).cost;
   if (cost == kImpassable) return;  // the gate will say why
-  worker_.Start(AdviceWorker::Job{++jobs_, map_.map(), baseline_,
-                                  std::move(route), cost});
+  work_ = Work::kRunning;
+  anchor_ = anchor;
+  began_ = now;
+  worker_.Start({++jobs_,
+                 {map, &map->map},
+                 map->map_id,
+                 baseline_.request_id,
+                 baseline_.baseline_digest,
+                 anchor,
+                 Cell{baseline_.goal_x, baseline_.goal_y},
+                 std::move(route),
+                 cost});
 }
 
 void AdvisorNode::Publish(const AdviceWorker::Done& done, bus::Time now) {
   ++answers_;
+  work_ = Work::kAnswered;
+  answer_time_.Add(Seconds(now - began_));
   if (done.answer.kind == AnswerKind::kFailed) {
     ++failures_;
     last_error_ = done.answer.error;
@@ -219,14 +214,16 @@ bus::Time AdvisorNode::Advance(bus::Time now) {
   if (!current_.empty() && repeat_.Due(now)) {
     for (advice_t& message : current_) advice_.Send(message);
   }
+  if (now >= again_at_) Begin(now);
   const bus::Time repeat = current_.empty() ? bus::kNever : repeat_.next();
-  return std::min(map_.Advance(now), repeat);
+  return std::min({map_.Advance(now), repeat, again_at_});
 }
 
 std::string AdvisorNode::state() const {
   if (!map_.map()) return map_.state();
   const std::string special = worker_.backend().figures().state;
   if (!special.empty()) return special;
+  if (work_ == Work::kWaiting) return "ready: waiting for the robot";
   return worker_.busy() ? "working" : "ready";
 }
 
@@ -239,6 +236,7 @@ void AdvisorNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("jobs", jobs_);
   counters.emplace_back("answers", answers_);
   counters.emplace_back("failures", failures_);
+  counters.emplace_back("anchor_passed", passed_);
   counters.emplace_back("queue", worker_.busy() ? 1 : 0);
   for (auto& counter : worker_.backend().figures().counters) {
     counters.push_back(std::move(counter));

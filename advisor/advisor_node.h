@@ -1,67 +1,24 @@
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "advisor/advice_worker.h"
+#include "advisor/anchor.h"
 #include "advisor/backend.h"
 #include "bus/map_receiver.h"
 #include "bus/node.h"
 
 namespace terra::advisor {
 
-/// Runs a backend in a thread of its own: the newest task only, and a new task
-/// stops the one before.
-///
-/// Threads: Start, Cancel and Take from the thread that acts; `ready` is called
-///          from the worker when an answer can be taken.
-class AdviceWorker {
- public:
-  /// A task with what keeps its map alive, and its number.
-  struct Job {
-    std::int64_t number = 0;
-    bus::MapPtr map;
-    terra_msg::baseline_t baseline;
-    Route route;
-    double baseline_cost = 0;
-  };
-  struct Done {
-    Job job;
-    AdviceAnswer answer;
-  };
-
-  AdviceWorker(std::unique_ptr<Backend> backend, std::function<void()> ready);
-
-  void Start(Job job);
-  void Cancel();
-  std::optional<Done> Take();
-
-  bool busy() const;
-  const Backend& backend() const { return *backend_; }
-
- private:
-  void Work(std::stop_token end);
-
-  std::unique_ptr<Backend> backend_;
-  std::function<void()> ready_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::optional<Job> waiting_;
-  std::optional<Done> done_;
-  bool busy_ = false;
-  std::stop_source current_;
-  std::jthread thread_;  // last: it uses the others
-};
-
-/// An advisor on the bus: listens to map and BASELINE; publishes ADVICE on the
-/// advice bus when its backend has an answer, and then once a second while the
-/// baseline stands. A newer baseline or map cancels the work for the old one.
+/// An advisor on the bus: listens to map and BASELINE, and to DEPLOYED, POSE
+/// and VERDICT for a robot that moves; publishes ADVICE on the advice bus when
+/// its backend has an answer, and then once a second while the baseline stands.
+/// A newer baseline or map cancels the work for the old one; so does a robot
+/// that passes the anchor, and then the work begins again further ahead.
 class AdvisorNode : public bus::Node {
  public:
   /// `advice` sends on the advice bus, `out` on the deployed one.
@@ -75,20 +32,36 @@ class AdvisorNode : public bus::Node {
   void AddCounters(bus::Counters& counters) const override;
 
  private:
-  void OnBaseline(const terra_msg::baseline_t& message);
-  void Begin();
+  void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
+  void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);
+  void OnPose(const terra_msg::pose_t& message, bus::Time now);
+  void OnVerdict(const terra_msg::verdict_t& message, bus::Time now);
+  void Begin(bus::Time now);
+  void StartFrom(const Anchor& anchor, bus::Time now);
+  void FollowRobot(bus::Time now);
   void Publish(const AdviceWorker::Done& done, bus::Time now);
 
   std::string name_;
   bus::Outbox& advice_;
   bus::MapReceiver map_;
   bus::SenderTracker planner_;
+  bus::SenderTracker gate_;
   terra_msg::baseline_t baseline_{};
+  double cell_size_m_ = 1;
+  AnchorChooser anchors_;
+  AnswerTime answer_time_;
+  // What the backend works on, or waits for the robot to be ready for.
+  enum class Work { kNone, kWaiting, kRunning, kAnswered };
+  Work work_ = Work::kNone;
+  Anchor anchor_;
+  bus::Time began_{};
+  bus::Time again_at_ = bus::kNever;  ///< After a verdict `late`.
   std::vector<terra_msg::advice_t> current_;
   bus::Periodic repeat_{bus::kSlowPeriod};
   std::int64_t jobs_ = 0;
   std::int64_t answers_ = 0;
   std::int64_t failures_ = 0;
+  std::int64_t passed_ = 0;  ///< Jobs begun again because the robot was faster.
   std::string last_error_;
   AdviceWorker worker_;  // last: its thread may call wake
 };

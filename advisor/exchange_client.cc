@@ -29,6 +29,14 @@ bool WriteWhole(const fs::path& path, const std::string& content) {
   return file.good() && !failed;
 }
 
+constexpr const char* kReadme =
+    "Each folder here is a question to a language model, for a person or a\n"
+    "program to answer: image-1.png and so on, and prompt.txt, which comes\n"
+    "last. Write the answer, in the form that the prompt's end asks for, to\n"
+    "answer.txt in the same folder; programs write it under another name and\n"
+    "rename it. A question that has its answer is not asked again: remove\n"
+    "answer.txt to change one.\n";
+
 bool WriteQuestion(const fs::path& folder, const LlmRequest& request) {
   std::error_code failed;
   fs::create_directories(folder, failed);
@@ -39,6 +47,10 @@ bool WriteQuestion(const fs::path& folder, const LlmRequest& request) {
         written &&
         WriteWhole(folder / ("image-" + std::to_string(++number) + ".png"),
                    picture->png);
+  }
+  const fs::path readme = folder.parent_path() / "README.txt";
+  if (!fs::exists(readme, failed)) {
+    written = written && WriteWhole(readme, kReadme);
   }
   // Last, so that who sees it finds the pictures too.
   return written && WriteWhole(folder / "prompt.txt", request.text);
@@ -64,6 +76,8 @@ std::string ExchangeName(const LlmIdentity& identity,
                c != '-';
       },
       '_');
+  // No option of a command line: map ids may be negative.
+  if (name.starts_with('-')) name.front() = '_';
   name += "-" + RequestHash(identity, request).substr(0, 12);
   return request.repeat == 0 ? name
                              : name + "-" + std::to_string(request.repeat);
@@ -104,6 +118,7 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
     }
   }
   reply.t_llm_s = seconds();
+  reply.timed = false;
   if (*before > kMaxAnswerBytes) {
     reply.reason = NoAnswer::kTooLarge;
     return reply;

@@ -18,6 +18,7 @@ struct ExchangeOptions {
 /// CASE-HASH, with prompt.txt and image-1.png, ...; answer.txt in it is the
 /// answer. It is read once it is there and has stopped growing (or was renamed
 /// into place). A question that has its answer already is not asked again.
+/// README.txt in the folder says all this to whoever answers.
 class ExchangeClient : public LlmClient {
  public:
   explicit ExchangeClient(ExchangeOptions options);

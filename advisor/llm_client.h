@@ -82,6 +82,8 @@ struct LlmReply {
 
   int tries = 0;       ///< Requests sent.
   double t_llm_s = 0;  ///< First byte sent to last received, waits included.
+  /// False where that says nothing of a model: files, batches.
+  bool timed = true;
   std::string recorded_at;  ///< UTC of the original call, when replayed.
 
   bool came() const { return status != ReplyStatus::kNoAnswer; }

@@ -41,25 +41,10 @@ void AddLimitOptions(CLI::App& app, CallLimits& limits) {
 void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
   const std::string group = "Model";
   GenerationSettings& settings = provider.settings;
-  app.add_option("--model", settings.model,
-                 "Model; empty = the backend's default")
-      ->group(group);
+  AddSettingsOptions(app, settings);
   app.add_option("--base-url", provider.base_url,
                  "Address of a server that speaks the backend's form; https, "
                  "or http on this machine")
-      ->group(group);
-  app.add_option("--max-output-tokens", settings.max_output_tokens,
-                 "Token limit of an answer, thinking included")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000))
-      ->group(group);
-  app.add_option("--effort", settings.effort,
-                 "Thinking effort; '' = leave it to the provider")
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--image-detail", settings.image_detail,
-                 "openai: image detail; '' = not sent")
-      ->capture_default_str()
       ->group(group);
   app.add_option("--anthropic-version", settings.anthropic_version,
                  "anthropic: version header")
@@ -91,6 +76,26 @@ void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
 }
 
 }  // namespace
+
+void AddSettingsOptions(CLI::App& app, GenerationSettings& settings) {
+  const std::string group = "Model";
+  app.add_option("--model", settings.model,
+                 "Model; empty = the backend's default")
+      ->group(group);
+  app.add_option("--max-output-tokens", settings.max_output_tokens,
+                 "Token limit of an answer, thinking included")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000))
+      ->group(group);
+  app.add_option("--effort", settings.effort,
+                 "Thinking effort; '' = leave it to the provider")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--image-detail", settings.image_detail,
+                 "openai: image detail; '' = not sent")
+      ->capture_default_str()
+      ->group(group);
+}
 
 void AddPromptOptions(CLI::App& app, MethodOptions& method,
                       std::string& references) {

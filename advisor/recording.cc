@@ -2,6 +2,7 @@
 
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,48 @@ ReplyStatus StatusOf(const std::string& name) {
   return ReplyStatus::kNoAnswer;
 }
 
+// What the reply decides of a line; the rest is the request's.
+void PutReply(const LlmReply& reply, const std::string& utc, json& line) {
+  line["model_returned"] = reply.model;
+  line["response_id"] = reply.response_id;
+  line["utc"] = utc;
+  line["status"] = StatusName(reply.status);
+  line["answer_text"] = reply.text;
+  line["error"] = reply.error;
+  line["reply_body"] = reply.body;
+  line["tokens_in"] = reply.usage.tokens_in;
+  line["tokens_out"] = reply.usage.tokens_out;
+  line["tokens_thinking"] = reply.usage.tokens_thinking;
+  line["spend_usd"] = reply.spend_usd ? json(*reply.spend_usd) : json(nullptr);
+  line["tries"] = reply.tries;
+  line["t_llm_s"] = reply.timed ? json(reply.t_llm_s) : json(nullptr);
+}
+
+std::string Dumped(const json& line) {
+  return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+/// Calls `take` with each call of a recording and where it stands.
+/// Errors: those of a line, with file and number, and those of `take`.
+Status ForEachCall(
+    std::istream& file, const std::string& path,
+    const std::function<Status(RecordedCall, const std::string&)>& take) {
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::string at = path + ":" + std::to_string(number) + ": ";
+    auto call = ParseRecord(line);
+    if (!call) {
+      if (file.eof()) break;  // Killed while it was writing.
+      return Error{call.error().code, at + call.error().message};
+    }
+    const Status taken = take(*std::move(call), at);
+    if (!taken) return taken;
+  }
+  return Done{};
+}
+
+}  // namespace
+
 std::string UtcNow() {
   const std::time_t now = std::time(nullptr);
   tm parts{};
@@ -49,11 +92,43 @@ std::string UtcNow() {
   return std::string(text, size);
 }
 
-std::string Key(const std::string& hash, int repeat) {
-  return hash + ":" + std::to_string(repeat);
+std::string RecordKey(const std::string& request_hash, int repeat) {
+  return request_hash + ":" + std::to_string(repeat);
 }
 
-}  // namespace
+Result<std::ofstream> OpenRecording(const std::string& path) {
+  std::error_code failed;
+  std::uintmax_t whole_lines = 0;
+  std::uintmax_t size = 0;
+  if (std::filesystem::is_regular_file(path, failed)) {
+    std::ifstream before(path, std::ios::binary);
+    for (std::string line; std::getline(before, line);) {
+      size += line.size() + (before.eof() ? 0 : 1);
+      if (!before.eof()) whole_lines = size;
+    }
+  }
+  failed.clear();
+  if (whole_lines < size) {
+    std::filesystem::resize_file(path, whole_lines, failed);
+  }
+  std::ofstream file(path, std::ios::app | std::ios::binary);
+  if (!file || failed) {
+    return Error{ErrorCode::kUnavailable,
+                 path + ": the recording cannot be written"};
+  }
+  return file;
+}
+
+void KeepImages(const LlmRequest& request, const std::string& folder) {
+  for (const auto& picture : request.pictures) {
+    const std::filesystem::path path =
+        std::filesystem::path(folder) / (Sha256Hex(picture->png) + ".png");
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+      std::ofstream(path, std::ios::binary) << picture->png;
+    }
+  }
+}
 
 std::string FormatRecord(const LlmIdentity& identity, const LlmRequest& request,
                          const LlmReply& reply, const std::string& utc) {
@@ -61,33 +136,36 @@ std::string FormatRecord(const LlmIdentity& identity, const LlmRequest& request,
   for (const auto& picture : request.pictures) {
     images.push_back(Sha256Hex(picture->png));
   }
-  const json line = {
-      {"schema", kSchema},
-      {"request_hash", RequestHash(identity, request)},
-      {"repeat", request.repeat},
-      {"case_id", request.case_id},
-      {"method", request.method},
-      {"prompt_id", request.prompt_id},
-      {"provider", identity.provider},
-      {"endpoint_class", identity.endpoint_class},
-      {"model_requested", identity.model},
-      {"model_returned", reply.model},
-      {"response_id", reply.response_id},
-      {"utc", utc},
-      {"settings", identity.settings},
-      {"prompt_text", request.text},
-      {"images", images},
-      {"status", StatusName(reply.status)},
-      {"answer_text", reply.text},
-      {"error", reply.error},
-      {"reply_body", reply.body},
-      {"tokens_in", reply.usage.tokens_in},
-      {"tokens_out", reply.usage.tokens_out},
-      {"tokens_thinking", reply.usage.tokens_thinking},
-      {"spend_usd", reply.spend_usd ? json(*reply.spend_usd) : json(nullptr)},
-      {"tries", reply.tries},
-      {"t_llm_s", reply.t_llm_s}};
-  return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  json line = {{"schema", kSchema},
+               {"request_hash", RequestHash(identity, request)},
+               {"repeat", request.repeat},
+               {"case_id", request.case_id},
+               {"method", request.method},
+               {"prompt_id", request.prompt_id},
+               {"provider", identity.provider},
+               {"endpoint_class", identity.endpoint_class},
+               {"model_requested", identity.model},
+               {"settings", identity.settings},
+               {"prompt_text", request.text},
+               {"images", images}};
+  PutReply(reply, utc, line);
+  return Dumped(line);
+}
+
+Result<std::string> AnswerRecord(std::string_view open_line,
+                                 const LlmReply& reply,
+                                 const std::string& utc) {
+  try {
+    json line = json::parse(open_line);
+    if (line.at("schema") != kSchema ||
+        line.at("status") != StatusName(ReplyStatus::kNoAnswer)) {
+      return Error{ErrorCode::kInvalid, "no open request"};
+    }
+    PutReply(reply, utc, line);
+    return Dumped(line);
+  } catch (const json::exception& error) {
+    return Error{ErrorCode::kInvalid, error.what()};
+  }
 }
 
 Result<RecordedCall> ParseRecord(std::string_view text) {
@@ -120,7 +198,8 @@ Result<RecordedCall> ParseRecord(std::string_view text) {
       reply.spend_usd = line.at("spend_usd").get<double>();
     }
     reply.tries = line.at("tries").get<int>();
-    reply.t_llm_s = line.at("t_llm_s").get<double>();
+    reply.timed = !line.at("t_llm_s").is_null();
+    if (reply.timed) reply.t_llm_s = line.at("t_llm_s").get<double>();
     reply.recorded_at = line.at("utc").get<std::string>();
     return call;
   } catch (const json::exception& error) {
@@ -136,13 +215,13 @@ Result<std::unique_ptr<LlmClient>> RecordingClient::Create(
     image_folder = path + ".images";
     std::filesystem::create_directories(image_folder, failed);
   }
-  std::ofstream file(path, std::ios::app | std::ios::binary);
-  if (!file || failed) {
+  auto file = OpenRecording(path);
+  if (failed || !file) {
     return Error{ErrorCode::kUnavailable,
                  path + ": the recording cannot be written"};
   }
   return std::unique_ptr<LlmClient>(std::make_unique<RecordingClient>(
-      std::move(inner), std::move(file), std::move(image_folder)));
+      std::move(inner), *std::move(file), std::move(image_folder)));
 }
 
 RecordingClient::RecordingClient(std::unique_ptr<LlmClient> inner,
@@ -154,7 +233,7 @@ RecordingClient::RecordingClient(std::unique_ptr<LlmClient> inner,
 LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
   LlmReply reply = inner_->Ask(request, stop);
   if (reply.came()) {
-    KeepImages(request);
+    if (!image_folder_.empty()) KeepImages(request, image_folder_);
     file_ << FormatRecord(identity(), request, reply, UtcNow()) << std::flush;
     if (!file_) {
       // The answer is still good; that it was not kept must not stay unseen.
@@ -166,18 +245,17 @@ LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
   return reply;
 }
 
-void RecordingClient::KeepImages(const LlmRequest& request) {
-  if (image_folder_.empty()) {
-    return;
-  }
-  for (const auto& picture : request.pictures) {
-    const std::filesystem::path path = std::filesystem::path(image_folder_) /
-                                       (Sha256Hex(picture->png) + ".png");
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-      std::ofstream(path, std::ios::binary) << picture->png;
-    }
-  }
+Result<std::unordered_set<std::string>> ReadRecordKeys(
+    const std::string& path) {
+  std::unordered_set<std::string> keys;
+  std::ifstream file(path, std::ios::binary);
+  const Status read =
+      ForEachCall(file, path, [&keys](RecordedCall call, const std::string&) {
+        keys.insert(RecordKey(call.request_hash, call.repeat));
+        return Status(Done{});
+      });
+  if (!read) return read.error();
+  return keys;
 }
 
 Result<std::unique_ptr<LlmClient>> ReplayClient::Create(
@@ -188,25 +266,24 @@ Result<std::unique_ptr<LlmClient>> ReplayClient::Create(
   }
   std::optional<LlmIdentity> identity;
   std::unordered_map<std::string, LlmReply> replies;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const auto at = path + ":" + std::to_string(number) + ": ";
-    auto call = ParseRecord(line);
-    if (!call) {
-      if (file.eof()) break;  // Killed while it was writing.
-      return Error{call.error().code, at + call.error().message};
-    }
-    if (!model.empty() && call->identity.model != model) continue;
-    if (!identity) identity = call->identity;
-    if (identity->model != call->identity.model ||
-        identity->settings != call->identity.settings) {
-      return Error{ErrorCode::kInvalid,
-                   at + "another model or other settings than before; choose "
-                        "one with --model, or split the file"};
-    }
-    replies[Key(call->request_hash, call->repeat)] =
-        std::move(call.value().reply);
-  }
+  const Status read =
+      ForEachCall(file, path, [&](RecordedCall call, const std::string& at) {
+        if (!model.empty() && call.identity.model != model) {
+          return Status(Done{});
+        }
+        if (!identity) identity = call.identity;
+        if (identity->model != call.identity.model ||
+            identity->settings != call.identity.settings) {
+          return Status(Error{
+              ErrorCode::kInvalid,
+              at + "another model or other settings than before; choose one "
+                   "with --model, or split the file"});
+        }
+        replies[RecordKey(call.request_hash, call.repeat)] =
+            std::move(call.reply);
+        return Status(Done{});
+      });
+  if (!read) return read.error();
   if (!identity) {
     return Error{
         ErrorCode::kNotFound,
@@ -222,7 +299,7 @@ ReplayClient::ReplayClient(LlmIdentity identity,
 
 LlmReply ReplayClient::Ask(const LlmRequest& request, std::stop_token) {
   const std::string hash = RequestHash(identity_, request);
-  const auto at = replies_.find(Key(hash, request.repeat));
+  const auto at = replies_.find(RecordKey(hash, request.repeat));
   if (at != replies_.end()) {
     return at->second;
   }

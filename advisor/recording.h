@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "advisor/llm_client.h"
 #include "terrain/result.h"
@@ -18,7 +19,8 @@ namespace terra::advisor {
 /// endpoint_class, model_requested, model_returned, response_id, utc, settings,
 /// prompt_text, images (SHA-256 of each PNG), status, answer_text, error,
 /// reply_body, tokens_in, tokens_out, tokens_thinking, spend_usd (or null),
-/// tries, t_llm_s. Never a key, nor a header that carries one.
+/// tries, t_llm_s (null for files and batches). Never a key, nor a header that
+/// carries one.
 struct RecordedCall {
   std::string request_hash;
   int repeat = 0;
@@ -30,8 +32,31 @@ struct RecordedCall {
 std::string FormatRecord(const LlmIdentity& identity, const LlmRequest& request,
                          const LlmReply& reply, const std::string& utc);
 
+/// Puts a reply into the line of a call that has none yet: FormatRecord of an
+/// empty reply, as a batch keeps its open requests. Errors: no such line.
+Result<std::string> AnswerRecord(std::string_view open_line,
+                                 const LlmReply& reply, const std::string& utc);
+
 /// Reads a line. Errors say what is missing.
 Result<RecordedCall> ParseRecord(std::string_view line);
+
+/// The time of a call as recordings write it.
+std::string UtcNow();
+
+/// What a recording files a call under: hash and repeat.
+std::string RecordKey(const std::string& request_hash, int repeat);
+
+/// The keys of all calls that a recording holds; none without the file. A
+/// damaged last line (a run that was killed) is left out. Errors: name the
+/// line.
+Result<std::unordered_set<std::string>> ReadRecordKeys(const std::string& path);
+
+/// Opens a recording to be added to. What a writer that was killed left of a
+/// last line is cut off. Errors: cannot be written.
+Result<std::ofstream> OpenRecording(const std::string& path);
+
+/// Writes the pictures of a request into a folder, under their hash.
+void KeepImages(const LlmRequest& request, const std::string& folder);
 
 /// Asks another client and keeps what came. Calls without an answer are not
 /// kept, so a later run asks again.
@@ -49,8 +74,6 @@ class RecordingClient : public LlmClient {
   LlmReply Ask(const LlmRequest& request, std::stop_token stop) override;
 
  private:
-  void KeepImages(const LlmRequest& request);
-
   std::unique_ptr<LlmClient> inner_;
   std::ofstream file_;
   std::string image_folder_;  ///< Empty = images are not kept.

@@ -52,6 +52,7 @@ int Serve(int port, const std::string& port_file, double latency_s) {
 
   httplib::Server server;
   server.set_payload_max_length(kMaxRequestBytes);
+  server.set_keep_alive_timeout(1);  // An idle connection delays the end.
   server.Post(".*", [latency_s](const httplib::Request& request,
                                 httplib::Response& response) {
     Reply(request, response, latency_s);

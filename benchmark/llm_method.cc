@@ -48,11 +48,12 @@ AnswerStyle StyleOf(AnswerForm form) {
 }
 
 void KeepReply(const advisor::LlmReply& reply, Attempt& attempt) {
-  attempt.t_llm = reply.t_llm_s;
+  attempt.t_llm = reply.timed ? reply.t_llm_s : kImpassable;
   attempt.tries = reply.tries;
   attempt.tokens_in = reply.usage.tokens_in;
   attempt.tokens_out = reply.usage.tokens_out;
-  // Without a price the spend is not known, which is not nothing.
+  // Without a price the spend is not known, which is not nothing; likewise the
+  // time of answers from files.
   attempt.spend = reply.spend_usd.value_or(kImpassable);
   attempt.model = reply.model;
 }
@@ -67,16 +68,8 @@ class LlmMethod : public Method {
         form_(form) {}
 
   Attempt Try(const MethodInput& input) override {
-    const DatasetCase& c = input.dataset_case;
-    const auto sequence = c.extra.find("sequence");
-    const PlanningCase planning_case{
-        c.case_id,
-        input.map,
-        c.start,
-        c.goal,
-        input.baseline.waypoints,
-        input.baseline.cost,
-        sequence == c.extra.end() ? "" : sequence->second};
+    const PlanningCase planning_case =
+        PlanningCaseOf(input.dataset_case, input.map, input.baseline);
     Attempt attempt;
     const Stopwatch prepare;
     advisor::PreparedCase prepared =
@@ -193,6 +186,18 @@ std::string SettingsJson(const MethodOptions& options,
 }
 
 }  // namespace
+
+PlanningCase PlanningCaseOf(const DatasetCase& c, const TerrainMap& map,
+                            const planner::LatticePlan& baseline) {
+  const auto sequence = c.extra.find("sequence");
+  return {c.case_id,
+          map,
+          c.start,
+          c.goal,
+          baseline.waypoints,
+          baseline.cost,
+          sequence == c.extra.end() ? "" : sequence->second};
+}
 
 Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
                                       const LlmMethodForm& form) {

@@ -3,10 +3,16 @@
 #include <string>
 
 #include "advisor/llm_backend.h"
+#include "advisor/llm_methods.h"
 #include "benchmark/method.h"
 #include "terrain/result.h"
 
 namespace terra::benchmark {
+
+/// A dataset's case as a question is prepared from it. Refers to its arguments.
+advisor::PlanningCase PlanningCaseOf(const DatasetCase& dataset_case,
+                                     const TerrainMap& map,
+                                     const planner::LatticePlan& baseline);
 
 /// A method that asks a model, and the settings that decide its answers.
 struct LlmMethodChoice {

@@ -1,6 +1,7 @@
 #include "benchmark/metrics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string_view>
 #include <unordered_map>
@@ -115,8 +116,9 @@ void MeasureTimes(const std::vector<Score>& scores, Metrics& m) {
   if (e2e.empty()) return;
   const auto n = static_cast<double>(e2e.size());
   m.prep_median = Median(std::move(prep));
-  m.llm_median = Median(std::move(llm));
   m.det_median = Median(std::move(det));
+  if (!std::isfinite(total)) return;  // Answers from files have no time.
+  m.llm_median = Median(std::move(llm));
   m.e2e_p95 = NearestRank(e2e, 95);
   m.e2e_median = Median(std::move(e2e));
   if (total > 0) m.fps = n / total;

@@ -65,6 +65,11 @@ Result<Advised> Advise(const AdviseArguments& arguments,
 
   const auto backend = advisor::MakeBackend(arguments.advisor);
   if (!backend) return backend.error();
+  if (arguments.advisor.backend == "exchange") {
+    std::cerr << "terra: the question goes to a folder in "
+              << arguments.advisor.llm.service.exchange_folder
+              << " (README.txt there); waiting for its answer.txt\n";
+  }
   const auto begin = std::chrono::steady_clock::now();
   const AdviceAnswer answer =
       (*backend)->Advise({map, MapId(map), 0, problem.start, problem.goal,

@@ -27,6 +27,8 @@ void AddBenchCommand(CLI::App& app, int& exit_code) {
   AddBenchMerge(bench, exit_code);
   AddBenchTable(bench, exit_code);
   AddBenchReport(bench, exit_code);
+  AddBenchExportBatch(bench, exit_code);
+  AddBenchImportBatch(bench, exit_code);
 }
 
 std::string CommandLine() {

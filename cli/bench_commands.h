@@ -20,6 +20,8 @@ void AddBenchMerge(CLI::App& bench, int& exit_code);
 void AddBenchTable(CLI::App& bench, int& exit_code);
 void AddBenchReport(CLI::App& bench, int& exit_code);
 void AddBenchReferences(CLI::App& bench, int& exit_code);
+void AddBenchExportBatch(CLI::App& bench, int& exit_code);
+void AddBenchImportBatch(CLI::App& bench, int& exit_code);
 
 /// Adds --jobs: threads to use, 0 = all cores.
 void AddJobsOption(CLI::App& command, int& jobs);

@@ -3,7 +3,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "benchmark/run.h"
 #include "bus/build_id.h"
 #include "cli/bench_commands.h"
+#include "cli/case_selection.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 #include "terrain/files/csv.h"
@@ -28,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using benchmark::MethodRun;
-
-constexpr std::size_t kMaxCaseListBytes = std::size_t{1} << 28;
 
 struct RunArguments {
   std::string dataset;
@@ -54,29 +52,6 @@ std::optional<benchmark::Shard> ParseShard(const std::string& text) {
     return std::nullopt;
   }
   return benchmark::Shard{*index, *count};
-}
-
-// N = the first N of each group; else a file with an id a line.
-Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
-                                             const std::string& text) {
-  if (text.empty()) return std::vector<std::string>{};
-  const Result<int> number = ParseInteger(text);
-  if (number.ok()) return benchmark::FirstOfEachGroup(dataset, *number);
-  const Result<std::string> file = ReadWholeFile(text, kMaxCaseListBytes);
-  if (!file.ok()) return file.error();
-  std::vector<std::string> ids;
-  std::istringstream lines(*file);
-  for (std::string id; lines >> id;) {
-    if (dataset.Find(id) == nullptr) {
-      return Error{ErrorCode::kInvalid,
-                   text + ": the dataset has no case '" + id + "'"};
-    }
-    ids.push_back(id);
-  }
-  if (ids.empty()) {
-    return Error{ErrorCode::kInvalid, text + ": names no case"};
-  }
-  return ids;
 }
 
 bool AsksModel(const std::string& backend) {
@@ -188,11 +163,7 @@ void AddOptions(CLI::App& command, RunArguments& arguments) {
   command.add_flag("--polish", arguments.polish,
                    "advisor with a model: improve each route inside a corridor "
                    "around it before it is verified");
-  command
-      .add_option("--cases", arguments.cases,
-                  "The first N cases of each group, or a file with an id a "
-                  "line (default: all)")
-      ->type_name("FILE|N");
+  AddCasesOption(command, arguments.cases);
   command
       .add_option("--repeats", arguments.options.repeats,
                   "Ask each case K times (default 1)")

@@ -1,14 +1,18 @@
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/log_info_output.h"
 #include "cli/output.h"
+#include "logger/audit.h"
 #include "logger/log_info.h"
 #include "logger/log_reader.h"
+#include "logger/report.h"
 
 namespace terra::cli {
 namespace {
@@ -48,12 +52,110 @@ void AddInfo(CLI::App& log, int& exit_code) {
   });
 }
 
+struct AuditArguments {
+  std::string file;
+  bool json = false;
+};
+
+void PrintAudit(const logger::Audit& audit) {
+  std::cout << audit.verdicts << " verdicts and " << audit.deployed
+            << " deployments made again, the same; " << audit.anchors
+            << " taken as the state to begin from; " << audit.sessions
+            << " sessions of the gate\n";
+  for (const logger::Finding& finding : audit.findings) {
+    std::cout << logger::KindName(finding.kind);
+    if (finding.decision != 0) std::cout << ", decision " << finding.decision;
+    std::cout << ": " << finding.what << "\n";
+  }
+  std::cout << (audit.clean()
+                    ? "clean\n"
+                    : std::to_string(audit.num_findings) + " findings\n");
+}
+
+void PrintAuditJson(const logger::Audit& audit) {
+  nlohmann::json findings = nlohmann::json::array();
+  for (const logger::Finding& finding : audit.findings) {
+    findings.push_back({{"kind", logger::KindName(finding.kind)},
+                        {"session", finding.session},
+                        {"decision", finding.decision},
+                        {"what", finding.what}});
+  }
+  const nlohmann::json all = {
+      {"clean", audit.clean()},     {"sessions", audit.sessions},
+      {"verdicts", audit.verdicts}, {"deployed", audit.deployed},
+      {"anchors", audit.anchors},   {"num_findings", audit.num_findings},
+      {"findings", findings}};
+  std::cout << all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+            << "\n";
+}
+
+int RunAudit(const AuditArguments& arguments) {
+  Result<logger::LogReader> reader = logger::LogReader::Open(arguments.file);
+  if (!reader) return Fail(reader.error());
+  const logger::Audit audit = logger::AuditLog(*reader);
+  if (arguments.json) {
+    PrintAuditJson(audit);
+  } else {
+    PrintAudit(audit);
+  }
+  return audit.clean() ? kDone : kCouldNot;
+}
+
+void AddAudit(CLI::App& log, int& exit_code) {
+  CLI::App& command = *log.add_subcommand(
+      "audit",
+      "Make every verdict and deployment again from its inputs and compare; "
+      "exit 1 if anything differs or is missing");
+  const auto arguments = std::make_shared<AuditArguments>();
+  command.add_option("file", arguments->file, "LCM event log")->required();
+  command.add_flag("--json", arguments->json, "Print JSON");
+  command.footer(
+      "Example:\n  terra log audit "
+      "log/terra-20260131T120000Z-0123abcd.000.lcmlog");
+  command.callback([arguments, &exit_code] {
+    exit_code = RunAudit(*arguments);
+  });
+}
+
+struct ReportArguments {
+  std::string file;
+  std::string out;
+};
+
+int RunReport(const ReportArguments& arguments) {
+  Result<logger::LogReader> reader = logger::LogReader::Open(arguments.file);
+  if (!reader) return Fail(reader.error());
+  const std::string page = logger::MakeReport(arguments.file, *reader);
+  std::ofstream file(arguments.out, std::ios::binary);
+  if (!file.write(page.data(), std::ssize(page)) || !file.flush()) {
+    return Fail({ErrorCode::kUnavailable, "cannot write " + arguments.out});
+  }
+  return kDone;
+}
+
+void AddReport(CLI::App& log, int& exit_code) {
+  CLI::App& command = *log.add_subcommand(
+      "report",
+      "Write one HTML page about a log: time line, routes, latencies");
+  const auto arguments = std::make_shared<ReportArguments>();
+  command.add_option("file", arguments->file, "LCM event log")->required();
+  command.add_option("--out", arguments->out, "HTML file")->required();
+  command.footer(
+      "Example:\n  terra log report "
+      "log/terra-20260131T120000Z-0123abcd.000.lcmlog --out run.html");
+  command.callback([arguments, &exit_code] {
+    exit_code = RunReport(*arguments);
+  });
+}
+
 }  // namespace
 
 void AddLogCommand(CLI::App& app, int& exit_code) {
   CLI::App& log = *app.add_subcommand("log", "Look into recorded logs");
   log.require_subcommand(1);
   AddInfo(log, exit_code);
+  AddAudit(log, exit_code);
+  AddReport(log, exit_code);
 }
 
 }  // namespace terra::cli

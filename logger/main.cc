@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <ctime>
 
 #include <CLI/CLI.hpp>
@@ -57,6 +58,8 @@ terra::Result<std::unique_ptr<terra::bus::Node>> MakeNode(
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that may not grow is to be an error like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   LoggerConfig config;
   terra::bus::ProcessSpec spec;
   spec.program = "terra-logger";

@@ -103,11 +103,15 @@ void StateSnapshot::TakeConfig(const HeardEvent& event) {
 void StateSnapshot::TakeBaseline(const HeardEvent& event) {
   const auto baseline = bus::Decode<terra_msg::baseline_t>(event.data);
   if (!baseline) return;
-  baseline_ = std::make_shared<const HeardEvent>(event);
-  if (baseline->baseline_digest != baseline_digest_) {
-    baseline_digest_ = baseline->baseline_digest;
-    advice_.clear();
+  const auto kept = std::make_shared<const HeardEvent>(event);
+  if (baseline->baseline_digest == baseline_digest_ && !baselines_.empty()) {
+    baselines_.back() = kept;
+    return;
   }
+  baseline_digest_ = baseline->baseline_digest;
+  advice_.clear();
+  baselines_.push_back(kept);
+  if (baselines_.size() > kMaxBaselines) baselines_.pop_front();
 }
 
 void StateSnapshot::TakeAdvice(const HeardEvent& event) {
@@ -131,9 +135,8 @@ void StateSnapshot::Visit(
   for (const Kept& tile : tiles_) {
     if (tile && visited.insert(tile.get()).second) visit(*tile);
   }
-  for (const Kept& kept : {request_, baseline_}) {
-    if (kept) visit(*kept);
-  }
+  if (request_) visit(*request_);
+  for (const Kept& baseline : baselines_) visit(*baseline);
   for (const auto& [key, advice] : advice_) visit(*advice);
   for (const Kept& kept : {pose_, deployed_}) {
     if (kept) visit(*kept);

@@ -20,8 +20,9 @@ namespace terra::logger {
 /// log begins with them, so that it can be audited without the parts before.
 ///
 /// Keeps the newest CONFIG of each process, MAP_HEADER and the tiles that it
-/// lists, the newest PLAN_REQUEST, BASELINE, POSE and DEPLOYED, and the advice
-/// on the current baseline (its verdict may come in the next part).
+/// lists, the newest PLAN_REQUEST, POSE and DEPLOYED, the newest baselines
+/// (what is deployed may be an older one), and the advice on the current one
+/// (its verdict may come in the next part).
 ///
 /// Bounds: a map's compressed tiles, kMaxProcesses configurations, kMaxAdvice
 ///         advices. Malformed messages change nothing.
@@ -30,6 +31,7 @@ class StateSnapshot {
  public:
   static constexpr std::size_t kMaxProcesses = 64;
   static constexpr std::size_t kMaxAdvice = 64;
+  static constexpr std::size_t kMaxBaselines = 8;
 
   void Take(bus::Channel channel, const HeardEvent& event);
 
@@ -52,7 +54,7 @@ class StateSnapshot {
   std::optional<bus::MapOutline> outline_;
   std::vector<Kept> tiles_;  // One message may carry several.
   Kept request_;
-  Kept baseline_;
+  std::deque<Kept> baselines_;  // Of different digests, the newest last.
   std::int64_t baseline_digest_ = 0;
   std::map<std::array<std::int64_t, 3>, Kept> advice_;
   Kept pose_;

@@ -70,7 +70,7 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   const GridSteps grid(map);
   const OctileBound<Keys> to_goal(keys, goal);
   const auto key_of = [this](std::size_t index) {
-    return labels_[index].search == search_ ? labels_[index].key : Keys::kLimit;
+    return labels_[index].search == search_ ? labels_[index].key : Keys::kNone;
   };
   const auto push = [&](std::size_t index, Key key, Key total, int x, int y,
                         std::size_t arrival) {

@@ -19,14 +19,18 @@ struct Query {
   const NativeSearchOptions& options;
 };
 
-// Whether keys hold the way across the map at the lowest cost, so that sums of
-// a key below the limit and an octile bound do not overflow.
+// Whether keys hold the way across the map at the lowest cost, and have room
+// for what a search adds up before it compares: a key below the limit, a step
+// and an octile bound.
 template <typename Keys>
 bool HoldMap(const TerrainMap& map) {
+  const Keys keys(map);
   const double steps = std::max(map.width(), map.height());
-  return map.cost_grid().holds_units() &&
-         steps * static_cast<double>(Keys(map).min_diagonal()) <
-             static_cast<double>(Keys::kLimit);
+  const double across = steps * static_cast<double>(keys.min_diagonal());
+  const auto limit = static_cast<double>(Keys::kLimit);
+  return map.cost_grid().holds_units() && across < limit &&
+         limit + static_cast<double>(keys.max_diagonal()) + across <
+             static_cast<double>(Keys::kNone);
 }
 
 // Whether a search with these keys is worth starting. A known route's cost

@@ -14,10 +14,11 @@ namespace terra {
 /// cell's predecessor is the neighbour from which it is reached at the lowest
 /// key, of equal ones the one straight ahead, so that paths have few corners.
 ///
-/// key_of(index) is the key of a cell of the CostGrid, Keys::kLimit where it
-/// has none. A labelled cell other than the start was labelled from a neighbour
-/// whose key can only have fallen since, so keys fall on the way and it ends at
-/// the start. Keys of which that is not true are a caller's bug and end it too.
+/// key_of(index) is the key of a cell of the CostGrid, at least Keys::kLimit
+/// where it has none. A labelled cell other than the start was labelled from a
+/// neighbour whose key can only have fallen since, so keys fall on the way and
+/// it ends at the start. Keys of which that is not true are a caller's bug and
+/// end it too.
 template <typename Keys, typename KeyOf>
 CellPath ExtractPath(const TerrainMap& map, const Keys& keys, Cell start,
                      Cell goal, const KeyOf& key_of) {

@@ -34,6 +34,8 @@ class IntegerKeys {
  public:
   using Key = KeyType;
   static constexpr Key kLimit = kQ * kP;
+  /// Key of what no path has reached: above every sum.
+  static constexpr Key kNone = std::numeric_limits<Key>::max();
 
   explicit IntegerKeys(const TerrainMap& map)
       : scale_(map.costs().scale),
@@ -75,6 +77,7 @@ class DoubleKeys {
  public:
   using Key = double;
   static constexpr Key kLimit = std::numeric_limits<double>::infinity();
+  static constexpr Key kNone = kLimit;
 
   explicit DoubleKeys(const TerrainMap& map) {
     const CostTable& table = map.costs();

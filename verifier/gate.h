@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "terrain/map.h"
-#include "verifier/driven_route.h"
+#include "terrain/driven_route.h"
 #include "verifier/gate_memory.h"
 #include "verifier/gate_messages.h"
 #include "verifier/verify.h"

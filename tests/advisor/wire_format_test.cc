@@ -5,39 +5,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "terrain/files/whole_file.h"
+#include "tests/advisor/golden_question.h"
 
 namespace terra::advisor {
 namespace {
 
 using nlohmann::json;
-
-std::string Sample(const std::string& name) {
-  return ReadWholeFile(TERRA_TEST_DATA "/providers/" + name, 1u << 20).value();
-}
-
-LlmRequest GoldenQuestion(const std::string& text) {
-  LlmRequest request;
-  request.text = text;
-  for (const char* name : {"map.png", "map_baseline.png", "rea_pair.png"}) {
-    auto picture = std::make_shared<EncodedPicture>();
-    picture->png = Sample(name);
-    request.pictures.push_back(std::move(picture));
-  }
-  return request;
-}
-
-// The longest string in a document that is no picture: the question.
-std::string QuestionIn(const json& body) {
-  std::string longest;
-  const json flat = body.flatten();
-  for (const auto& [path, value] : flat.items()) {
-    if (!value.is_string() || !(path.ends_with("/text"))) continue;
-    const auto& text = value.get_ref<const std::string&>();
-    if (text.size() > longest.size()) longest = text;
-  }
-  return longest;
-}
 
 struct Golden {
   std::string provider;
@@ -62,7 +35,8 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST_P(GoldenRequestTest, EqualsWhatTheSdkSends) {
-  const json golden = json::parse(Sample(GetParam().file + ".body.json"));
+  const json golden =
+      json::parse(ProviderSample(GetParam().file + ".body.json"));
   const auto format = MakeWireFormat(GetParam().provider);
   GenerationSettings settings;
   settings.model = GetParam().provider == "chat"
@@ -197,8 +171,9 @@ INSTANTIATE_TEST_SUITE_P(All, ReplyTest, ::testing::ValuesIn(kReplies),
 
 TEST_P(ReplyTest, IsReadForWhatItIs) {
   const Reply& reply = GetParam();
-  const std::string body =
-      reply.body.front() == '@' ? Sample(reply.body.substr(1)) : reply.body;
+  const std::string body = reply.body.front() == '@'
+                               ? ProviderSample(reply.body.substr(1))
+                               : reply.body;
   const WireReply read = MakeWireFormat(reply.provider)->ReadReply(body);
   EXPECT_EQ(read.status, reply.status) << read.error;
   if (reply.text != "*") {
@@ -234,7 +209,7 @@ TEST(WireFormatTest, UsedUpQuotasAreFinal) {
 }
 
 TEST(WireFormatTest, ReadsAnyBytesWithoutThrowing) {
-  const std::string good = Sample("aimock-anthropic-messages.json");
+  const std::string good = ProviderSample("aimock-anthropic-messages.json");
   for (const char* provider : {"openai", "gemini", "anthropic", "chat"}) {
     const auto format = MakeWireFormat(provider);
     for (std::size_t cut = 0; cut < good.size(); ++cut) {

@@ -5,6 +5,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 #include <sys/mman.h>
@@ -16,6 +18,18 @@ namespace terra::testing {
 namespace {
 
 using std::chrono::milliseconds;
+
+// As a shell finds it.
+std::string FindProgram(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string candidate = folder + "/" + name;
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
+  }
+  return name;
+}
 
 // In the child, between fork and exec: only async-signal-safe calls.
 [[noreturn]] void Exec(char* const* arguments, int output_fd) {
@@ -32,12 +46,13 @@ using std::chrono::milliseconds;
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command) {
-  if (::access(command.front().c_str(), X_OK) != 0) {
-    throw std::runtime_error("no such program: " + command.front());
+  const std::string program = FindProgram(command.front());
+  if (::access(program.c_str(), X_OK) != 0) {
+    throw std::runtime_error("no such program: " + program);
   }
-  std::vector<char*> arguments;
-  for (const std::string& word : command) {
-    arguments.push_back(const_cast<char*>(word.c_str()));
+  std::vector<char*> arguments = {const_cast<char*>(program.c_str())};
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    arguments.push_back(const_cast<char*>(command[i].c_str()));
   }
   arguments.push_back(nullptr);
   output_fd_ = ::memfd_create("output", MFD_CLOEXEC);

@@ -12,7 +12,8 @@ namespace terra::testing {
 /// A program that a test runs. It dies with the test, whatever happens.
 class ChildProcess {
  public:
-  /// Starts it; its output goes to a file of its own, read by output().
+  /// Starts it, looked for in PATH when its name has no slash; its output goes
+  /// to a file of its own, read by output().
   /// Errors: std::runtime_error when there is no such program.
   explicit ChildProcess(const std::vector<std::string>& command);
   /// Kills it if it still runs.

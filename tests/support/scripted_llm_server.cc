@@ -231,6 +231,9 @@ void ScriptedLlmServer::Accept() {
 void ScriptedLlmServer::Serve(int socket) {
   std::string buffer;
   while (auto request = TakeRequest(socket, buffer)) {
+    // Before it counts: who waits for this request may send the next one, and
+    // that must not get this one's reply.
+    const ScriptedReply reply = handler_(*request);
     {
       const std::scoped_lock lock(mutex_);
       seen_.push_back(*request);
@@ -238,7 +241,7 @@ void ScriptedLlmServer::Serve(int socket) {
       ++request_count_;
     }
     changed_.notify_all();
-    if (!Play(socket, handler_(*request))) break;
+    if (!Play(socket, reply)) break;
   }
   const std::scoped_lock lock(mutex_);
   std::erase(open_, socket);

@@ -44,6 +44,7 @@ class VirtualNetwork {
     }
     return messages;
   }
+  const std::vector<bus::RawMessage>& messages() const { return sent_; }
   void ForgetSent() { sent_.clear(); }
 
   /// Says something as if another process did.

@@ -1,4 +1,4 @@
-#include "verifier/driven_route.h"
+#include "terrain/driven_route.h"
 
 #include <limits>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 #include "tests/support/ascii_map.h"
 #include "tests/support/random_map.h"
 
-namespace terra::verifier {
+namespace terra {
 namespace {
 
 using testing::Random;
@@ -172,4 +172,4 @@ TEST(DrivenRouteTest, PassedCellsCannotBeUsed) {
 }
 
 }  // namespace
-}  // namespace terra::verifier
+}  // namespace terra

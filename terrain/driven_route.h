@@ -3,7 +3,7 @@
 #include "terrain/cell.h"
 #include "terrain/map.h"
 
-namespace terra::verifier {
+namespace terra {
 
 /// The deployed route as a robot drives it: its dense cells and how far along
 /// them the robot has come.
@@ -28,6 +28,12 @@ class DrivenRoute {
   /// pose is on it again.
   void OnPose(Cell pose);
 
+  /// Index of the cell that the robot has reached, and of the last cell; -1
+  /// without a route.
+  int place() const { return cells_.empty() ? -1 : static_cast<int>(place_); }
+  int last_index() const { return static_cast<int>(cells_.size()) - 1; }
+  bool on_route() const { return on_route_; }
+
   /// Returns whether a proposal may no longer start at this index: the robot
   /// has passed it or is off the route, or there is no such cell.
   bool Passed(int index) const;
@@ -38,6 +44,10 @@ class DrivenRoute {
   /// The cost from an index on to the goal. Pre: not Passed(index); the route
   /// is feasible on the map.
   double CostFrom(const TerrainMap& map, int index) const;
+
+  /// Returns waypoints that visit exactly the dense cells from an index on.
+  /// Pre: not Passed(index).
+  Route RouteFrom(int index) const;
 
   /// Returns waypoints that visit exactly the dense cells up to an index, then
   /// those of the tail. A polyline cut inside a segment would visit others, so
@@ -52,4 +62,4 @@ class DrivenRoute {
   bool on_route_ = true;
 };
 
-}  // namespace terra::verifier
+}  // namespace terra

@@ -1,4 +1,4 @@
-#include "verifier/driven_route.h"
+#include "terrain/driven_route.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
 
-namespace terra::verifier {
+namespace terra {
 namespace {
 
 // Squared distance; nothing where it is beyond the tolerance. The first test
@@ -79,6 +79,11 @@ double DrivenRoute::CostFrom(const TerrainMap& map, int index) const {
   return WalkRoute(map, cells.subspan(static_cast<std::size_t>(index))).cost;
 }
 
+Route DrivenRoute::RouteFrom(int index) const {
+  TERRA_REQUIRE(!Passed(index));
+  return CornersOf(CellPath(cells_.begin() + index, cells_.end()));
+}
+
 Route DrivenRoute::JoinAt(int index, const Route& tail) const {
   TERRA_REQUIRE(!tail.empty() && cell(index) == tail.front());
   // The waypoints up to the anchor, without repeated ones, so that padding does
@@ -101,4 +106,4 @@ Route DrivenRoute::JoinAt(int index, const Route& tail) const {
   return joined;
 }
 
-}  // namespace terra::verifier
+}  // namespace terra

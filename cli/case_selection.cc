@@ -1,0 +1,48 @@
+#include "cli/case_selection.h"
+
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include "benchmark/run.h"
+#include "terrain/files/csv.h"
+#include "terrain/files/whole_file.h"
+
+namespace terra::cli {
+namespace {
+
+constexpr std::size_t kMaxCaseListBytes = std::size_t{1} << 28;
+
+}  // namespace
+
+void AddCasesOption(CLI::App& command, std::string& cases) {
+  command
+      .add_option("--cases", cases,
+                  "The first N cases of each group, or a file with an id a "
+                  "line (default: all)")
+      ->type_name("FILE|N");
+}
+
+Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
+                                             const std::string& text) {
+  if (text.empty()) return std::vector<std::string>{};
+  const Result<int> number = ParseInteger(text);
+  if (number.ok()) return benchmark::FirstOfEachGroup(dataset, *number);
+  const Result<std::string> file = ReadWholeFile(text, kMaxCaseListBytes);
+  if (!file.ok()) return file.error();
+  std::vector<std::string> ids;
+  std::istringstream lines(*file);
+  for (std::string id; lines >> id;) {
+    if (dataset.Find(id) == nullptr) {
+      return Error{ErrorCode::kInvalid,
+                   text + ": the dataset has no case '" + id + "'"};
+    }
+    ids.push_back(id);
+  }
+  if (ids.empty()) {
+    return Error{ErrorCode::kInvalid, text + ": names no case"};
+  }
+  return ids;
+}
+
+}  // namespace terra::cli

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "logger/log_contents.h"
+
+namespace terra::logger {
+
+/// Something in a log that does not follow from the rest of it.
+struct Finding {
+  enum class Kind {
+    kDamage,        ///< Bytes that are no events, or not what was written.
+    kConflict,      ///< One name, two messages; a decision not readable.
+    kGap,           ///< Decisions of the gate that are not in the log.
+    kMissingInput,  ///< A decision names what the log does not hold.
+    kMismatch,      ///< The gate decides otherwise on the same inputs.
+  };
+  Kind kind = Kind::kDamage;
+  std::int64_t session = 0;   ///< Of the gate, 0 for none.
+  std::int64_t decision = 0;  ///< 0 for none.
+  std::string what;
+};
+
+/// Returns "damage", "conflict", ...
+const char* KindName(Finding::Kind kind);
+
+/// The result of an audit.
+struct Audit {
+  static constexpr std::size_t kMaxFindings = 1'000;
+
+  std::int64_t sessions = 0;  ///< Of the gate.
+  std::int64_t verdicts = 0;  ///< Made again, and the same.
+  std::int64_t deployed = 0;  ///< Made again, and the same.
+  std::int64_t anchors = 0;   ///< Deployments taken as the state to go on from:
+                              ///< route and costs checked, cause not known.
+  std::vector<Finding> findings;  ///< The first kMaxFindings.
+  std::int64_t num_findings = 0;
+
+  bool clean() const { return num_findings == 0; }
+  void Add(Finding finding);
+};
+
+/// Makes every verdict and deployment of a log again, through the gate, from
+/// the inputs that each names (docs/gate.md, invariant 6), and compares byte
+/// for byte except utime, session, seq and T_det.
+///
+/// The order in which the log has them does not matter, since it is not the
+/// order in which the gate heard them: decisions are taken by their number, and
+/// each says what it was made from. Where the log begins in mid-session, or
+/// lacks decisions, the next DEPLOYED is the state to go on from.
+Audit AuditDecisions(LogContents& contents);
+
+/// Adds what is wrong with the bytes of a log that was read to its end.
+void AddDamage(const LogReader& reader, const SealChecker& seals, Audit& audit);
+
+/// Reads a log and audits it, its seals included.
+Audit AuditLog(LogReader& reader);
+
+}  // namespace terra::logger

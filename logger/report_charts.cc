@@ -1,0 +1,288 @@
+#include "logger/report_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "logger/report_html.h"
+#include "verifier/verify.h"
+
+namespace terra::logger {
+namespace {
+
+using terra_msg::deployed_t;
+using terra_msg::verdict_t;
+
+constexpr double kWidth = 1120;
+constexpr double kLabels = 150;  // Left of the plot.
+constexpr double kLane = 26;
+constexpr std::size_t kMaxMarks = 3'000;  // Of one lane.
+constexpr std::size_t kMaxLanes = 12;     // Of advisors, of processes.
+
+constexpr char kRequestColor[] = "#6b4ea8";
+constexpr char kBaselineColor[] = "#1f4fe0";
+constexpr char kCandidateColor[] = "#0a8f2e";
+constexpr char kBadColor[] = "#c62f2f";
+constexpr char kMutedColor[] = "#9aa4b2";
+
+const char* ModeColor(std::int8_t mode) {
+  switch (mode) {
+    case deployed_t::MODE_BASELINE:
+      return kBaselineColor;
+    case deployed_t::MODE_CANDIDATE:
+      return kCandidateColor;
+    case deployed_t::MODE_HOLD:
+      return kBadColor;
+    default:
+      return "#d5dae2";
+  }
+}
+
+const char* VerdictColor(std::int16_t code) {
+  if (code == verdict_t::CODE_ACCEPTED) return kCandidateColor;
+  if (code == verdict_t::CODE_RETAINED || code == verdict_t::CODE_NOT_BEST ||
+      code == verdict_t::CODE_NOT_CHEAPER) {
+    return "#d08a00";
+  }
+  return kBadColor;
+}
+
+// Lays lanes below each other and draws marks into them.
+class Lanes {
+ public:
+  Lanes(std::int64_t first_us, std::int64_t last_us)
+      : first_us_(first_us),
+        span_us_(std::max<double>(1.0, static_cast<double>(last_us) -
+                                           static_cast<double>(first_us))) {}
+
+  void Begin(const std::string& name) {
+    y_ += kLane;
+    marks_ = 0;
+    svg_ += Format(
+        "<line x1=\"%.0f\" x2=\"%.0f\" y1=\"%.1f\" y2=\"%.1f\" "
+        "class=\"lane\"/>",
+        kLabels, kWidth, y_, y_);
+    svg_ += Format("<text x=\"%.0f\" y=\"%.1f\" class=\"label\">", kLabels - 10,
+                   y_ + 4) +
+            Escape(name) + "</text>\n";
+  }
+  void Dot(std::int64_t time_us, const char* color, const std::string& title) {
+    if (++marks_ > kMaxMarks) return;
+    svg_ += Format(
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\" "
+                "fill-opacity=\"0.8\"><title>",
+                X(time_us), y_, color) +
+            Escape(title) + "</title></circle>\n";
+  }
+  void Tick(std::int64_t time_us, const char* color) {
+    if (++marks_ > kMaxMarks) return;
+    svg_ += Format(
+        "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" "
+        "stroke=\"%s\" stroke-width=\"2\"/>",
+        X(time_us), X(time_us), y_ - 5, y_ + 5, color);
+  }
+  void Bar(std::int64_t from_us, std::int64_t to_us, const char* color,
+           const std::string& title) {
+    if (++marks_ > kMaxMarks) return;
+    svg_ +=
+        Format(
+            "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"14\" "
+            "rx=\"2\" fill=\"%s\"><title>",
+            X(from_us), y_ - 7, std::max(1.5, X(to_us) - X(from_us)), color) +
+        Escape(title) + "</title></rect>\n";
+  }
+  std::string Finish() {
+    const double bottom = y_ + kLane;
+    constexpr int kSteps = 8;
+    std::string axis;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = kLabels + (kWidth - 20 - kLabels) * i / kSteps;
+      axis += Format(
+          "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"10\" y2=\"%.1f\" "
+          "class=\"grid\"/><text x=\"%.1f\" y=\"%.1f\" "
+          "class=\"tick\">%.*f s</text>\n",
+          x, x, bottom - 8, x, bottom + 8, span_us_ < 2e7 ? 2 : 0,
+          1e-6 * span_us_ * i / kSteps);
+    }
+    return Format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\">", kWidth,
+                  bottom + 18) +
+           axis + svg_ + "</svg>\n";
+  }
+
+ private:
+  double X(std::int64_t time_us) const {
+    const double at =
+        (static_cast<double>(time_us) - static_cast<double>(first_us_)) /
+        span_us_;
+    return kLabels + std::clamp(at, 0.0, 1.0) * (kWidth - 20 - kLabels);
+  }
+
+  std::int64_t first_us_;
+  double span_us_;
+  double y_ = 0;
+  std::size_t marks_ = 0;
+  std::string svg_;
+};
+
+void DrawAdvice(const LogContents& contents, Lanes& lanes) {
+  std::map<std::string, std::vector<const Logged<terra_msg::advice_t>*>>
+      by_name;
+  for (const auto& [name, advice] : contents.advice) {
+    if (by_name.size() < kMaxLanes ||
+        by_name.contains(advice.message.advisor)) {
+      by_name[advice.message.advisor].push_back(&advice);
+    }
+  }
+  for (const auto& [name, all] : by_name) {
+    lanes.Begin("advice: " + name);
+    for (const auto* advice : all) {
+      const bool proposes =
+          advice->message.kind == terra_msg::advice_t::KIND_PROPOSE;
+      lanes.Dot(advice->time_us, proposes ? "#0f8b8d" : kMutedColor,
+                Format("attempt %lld, %d waypoints",
+                       static_cast<long long>(advice->message.attempt),
+                       advice->message.num_waypoints));
+    }
+  }
+}
+
+void DrawDecisions(const LogContents& contents, Lanes& lanes) {
+  lanes.Begin("verdicts");
+  for (const auto& [session, decisions] : contents.decisions) {
+    for (const auto& [number, logged] : decisions) {
+      const auto* verdict = std::get_if<verdict_t>(&logged.message);
+      if (verdict == nullptr) continue;
+      lanes.Dot(
+          logged.time_us, VerdictColor(verdict->code),
+          verdict->advisor + ": " +
+              std::string(verifier::CodeName(verifier::Code{verdict->code})));
+    }
+  }
+  lanes.Begin("deployed");
+  for (const auto& [session, decisions] : contents.decisions) {
+    const Logged<LogContents::Decided>* open = nullptr;
+    const auto close = [&](std::int64_t end_us) {
+      if (open == nullptr) return;
+      const auto& deployed = std::get<deployed_t>(open->message);
+      lanes.Bar(open->time_us, end_us, ModeColor(deployed.mode),
+                "route " + std::to_string(deployed.route_seq) + ", cost " +
+                    Number(deployed.deployed_cost) + ", " + deployed.source);
+    };
+    for (const auto& [number, logged] : decisions) {
+      if (!std::holds_alternative<deployed_t>(logged.message)) continue;
+      close(logged.time_us);
+      open = &logged;
+    }
+    close(contents.last_us);
+  }
+}
+
+void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
+  std::map<std::string, std::vector<const Logged<terra_msg::status_t>*>>
+      by_name;
+  for (const auto& status : contents.statuses) {
+    if (by_name.size() < kMaxLanes ||
+        by_name.contains(status.message.status_name)) {
+      by_name[status.message.status_name].push_back(&status);
+    }
+  }
+  for (const auto& [name, all] : by_name) {
+    lanes.Begin(name + " alive");
+    for (const auto* status : all) {
+      const bool ready = status->message.state.starts_with("ready");
+      lanes.Tick(status->time_us, ready ? kCandidateColor : kBadColor);
+    }
+  }
+}
+
+double Quantile(const std::vector<double>& sorted, double part) {
+  const double at = part * static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::lround(at))];
+}
+
+}  // namespace
+
+std::string TimeLine(const LogContents& contents) {
+  Lanes lanes(contents.first_us, contents.last_us);
+  lanes.Begin("requests");
+  for (const auto& [id, request] : contents.requests) {
+    lanes.Dot(request.time_us, kRequestColor, "request " + std::to_string(id));
+  }
+  for (const auto& [id, cancel] : contents.cancels) {
+    lanes.Dot(cancel.time_us, kBadColor, "cancel " + std::to_string(id));
+  }
+  lanes.Begin("baselines");
+  for (const auto& [digest, baseline] : contents.baselines) {
+    lanes.Dot(baseline.time_us, kBaselineColor,
+              baseline.message.planner + ", cost " +
+                  Number(baseline.message.baseline_cost));
+  }
+  DrawAdvice(contents, lanes);
+  DrawDecisions(contents, lanes);
+  DrawHeartbeats(contents, lanes);
+  return lanes.Finish();
+}
+
+std::string LatencyChart(std::vector<Latency> latencies) {
+  std::erase_if(latencies, [](const Latency& latency) {
+    return latency.seconds.empty();
+  });
+  if (latencies.empty()) return "<p class=\"note\">nothing measured</p>\n";
+  double low = 1e-4;
+  double high = 1e-3;
+  for (Latency& latency : latencies) {
+    for (double& value : latency.seconds) value = std::max(value, 1e-6);
+    std::sort(latency.seconds.begin(), latency.seconds.end());
+    low = std::min(low, latency.seconds.front());
+    high = std::max(high, latency.seconds.back());
+  }
+  const double first = std::floor(std::log10(low));
+  const double last = std::ceil(std::log10(high));
+  constexpr double kLeft = 210;
+  constexpr double kRight = 830;
+  const auto x = [&](double value) {
+    return kLeft +
+           (std::log10(value) - first) / (last - first) * (kRight - kLeft);
+  };
+  const double bottom = 34 * static_cast<double>(latencies.size()) + 12;
+  std::string svg = Format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\">",
+                           kWidth, bottom + 24);
+  for (double decade = first; decade <= last; ++decade) {
+    const double at = x(std::pow(10.0, decade));
+    svg += Format(
+        "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"6\" y2=\"%.1f\" "
+        "class=\"grid\"/><text x=\"%.1f\" y=\"%.1f\" "
+        "class=\"tick\">%s</text>\n",
+        at, at, bottom, at, bottom + 16,
+        Duration(std::pow(10.0, decade)).c_str());
+  }
+  double y = -6;
+  for (const Latency& latency : latencies) {
+    y += 34;
+    const std::vector<double>& values = latency.seconds;
+    svg += Format("<text x=\"%.0f\" y=\"%.1f\" class=\"label\">", kLeft - 12,
+                  y + 4) +
+           Escape(latency.name) + "</text>";
+    const std::size_t step = values.size() / kMaxMarks + 1;
+    for (std::size_t i = 0; i < values.size(); i += step) {
+      svg += Format(
+          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\" "
+          "fill-opacity=\"0.45\"/>",
+          x(values[i]), y, kBaselineColor);
+    }
+    const double median = Quantile(values, 0.5);
+    svg += Format(
+        "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" "
+        "stroke=\"#111\" stroke-width=\"2\"/>",
+        x(median), x(median), y - 9, y + 9);
+    svg += Format(
+        "<text x=\"%.0f\" y=\"%.1f\" class=\"value\">median %s, p99 "
+        "%s, n=%zu</text>\n",
+        kRight + 14, y + 4, Duration(median).c_str(),
+        Duration(Quantile(values, 0.99)).c_str(), values.size());
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace terra::logger

@@ -239,6 +239,11 @@ Result<std::string> CheckBaseUrl(const std::string& url) {
                  "an address must not hold a name or password; keys come from "
                  "the environment"};
   }
+  if (!UrlPart(parsed.get(), CURLUPART_QUERY).empty()) {
+    return Error{ErrorCode::kInvalid,
+                 "an address must not hold a query ('?'); keys come from the "
+                 "environment"};
+  }
   if (scheme != "https" && !(scheme == "http" && loopback)) {
     return Error{ErrorCode::kInvalid,
                  "'" + url +

@@ -14,8 +14,8 @@
 namespace terra::advisor {
 
 /// Checks an address that requests may go to: https anywhere, plain http only
-/// to this machine (localhost, 127.0.0.0/8, ::1); no user name in it. Returns
-/// "loopback" or "other".
+/// to this machine (localhost, 127.0.0.0/8, ::1); no user name, password or
+/// query in it, which might be keys. Returns "loopback" or "other".
 Result<std::string> CheckBaseUrl(const std::string& url);
 
 struct HttpRequest {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "advisor/llm_rounds.h"
 #include "terrain/native_search.h"
 #include "terrain/route_text.h"
 
@@ -85,7 +86,9 @@ LlmBackend::LlmBackend(std::string name, LlmService service,
       service_(std::move(service)),
       method_(options.method),
       min_gain_percent_(options.min_gain_percent),
-      pool_(std::move(pool)) {}
+      pool_(std::move(pool)) {
+  method_.rounds_deadline_s = options.service.provider.deadline_s;
+}
 
 std::string LlmBackend::method() const {
   return std::string(MethodName(method_.method));
@@ -119,10 +122,10 @@ AdviceAnswer LlmBackend::Advise(const AdviceTask& task, std::stop_token stop) {
   const PreparedCase prepared =
       PrepareCase(planning_case, method_, pool_.get());
   answer.t_prep_us = MicrosecondsSince(begin);
-  answer.request_hash =
-      RequestHash(service_.client->identity(), prepared.request);
-  const LlmReply reply = service_.client->Ask(prepared.request, stop);
-  Keep(ReadReply(planning_case, method_, reply), reply, answer);
+  const AskedCase asked = AskInRounds(planning_case, method_, prepared.request,
+                                      *service_.client, stop);
+  answer.request_hash = asked.request_hash;
+  Keep(asked.outcome, asked.reply, answer);
   return answer;
 }
 

@@ -30,8 +30,9 @@ struct LlmIdentity {
   std::string model;     ///< As requested.
   /// Settings that change answers, as JSON text with sorted keys.
   std::string settings = "{}";
-  /// Where the request goes: "provider", "loopback", "other" (a base URL of the
-  /// user's), "file".
+  /// Where the request goes: "provider", "loopback" (results are SIMULATED),
+  /// "loopback-model" (a real model on this machine), "other" (a base URL of
+  /// the user's), "file".
   std::string endpoint_class;
 };
 

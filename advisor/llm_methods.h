@@ -32,6 +32,10 @@ struct MethodOptions {
   PromptSwitches prompt;
   double noise_percent = 0;  ///< Of the LLM-facing map only; 0 to 100.
   std::uint64_t seed = 0;    ///< Of noise and of the choice of references.
+  /// How often a case may be asked, the verdict on a rejected proposal fed
+  /// back, and within which time. See AskInRounds.
+  int rounds = 1;
+  double rounds_deadline_s = 900;
 };
 
 /// A case turned into a question.

@@ -46,6 +46,10 @@ void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
                  "Address of a server that speaks the backend's form; https, "
                  "or http on this machine")
       ->group(group);
+  app.add_flag("--real-model", provider.real_model,
+               "The server on this machine runs a real model: do not mark "
+               "results SIMULATED")
+      ->group(group);
   app.add_option("--anthropic-version", settings.anthropic_version,
                  "anthropic: version header")
       ->capture_default_str()
@@ -155,6 +159,13 @@ void AddLlmOptions(CLI::App& app, LlmBackendOptions& options) {
   AddPromptOptions(app, options.method, options.references);
   AddProviderOptions(app, service.provider);
   AddLimitOptions(app, service.limits);
+  app.add_option(
+         "--rounds", options.method.rounds,
+         "Times that a case may be asked: a rejected proposal goes back "
+         "with its verdict, while --deadline allows")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10))
+      ->group("Prompt");
   app.add_option("--min-gain", options.min_gain_percent,
                  "Do not ask where the native optimum is not this many percent "
                  "cheaper than the baseline; 0 = always ask")

@@ -90,9 +90,14 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   } else if (!format->key_optional()) {
     key = "none";  // A test server wants the header, not a secret.
   }
-  LlmIdentity identity{
-      provider, full.settings.model, SettingsText(*format, full.settings),
-      own_url && *endpoint != "loopback" ? "provider" : *endpoint};
+  std::string endpoint_class = *endpoint;
+  if (*endpoint != "loopback") {
+    if (own_url) endpoint_class = "provider";
+  } else if (full.real_model) {
+    endpoint_class = "loopback-model";
+  }
+  LlmIdentity identity{provider, full.settings.model,
+                       SettingsText(*format, full.settings), endpoint_class};
   return std::unique_ptr<LlmClient>(std::make_unique<ProviderClient>(
       std::move(format), std::move(full), std::move(identity), std::move(key)));
 }
@@ -171,7 +176,7 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
   reply.model = WithoutKey(std::move(wire.model));
   reply.response_id = WithoutKey(std::move(wire.response_id));
   reply.usage = wire.usage;
-  reply.body = WithoutKey(std::move(http.body));
+  reply.body = BodyWithoutKey(std::move(http.body));
   if (reply.came()) {
     reply.reason = NoAnswer::kNone;
   }
@@ -188,6 +193,19 @@ std::string ProviderClient::WithoutKey(std::string text) const {
     text.replace(at, key_.size(), "[key]");
   }
   return text;
+}
+
+/// In a body the key may be written with escapes, as in "a\\/b". Then the body
+/// is written anew, without needless ones; else it stays as it came.
+std::string ProviderClient::BodyWithoutKey(std::string body) const {
+  body = WithoutKey(std::move(body));
+  if (body.find('\\') == std::string::npos) return body;
+  const auto json = nlohmann::json::parse(body, nullptr, false);
+  if (json.is_discarded()) return body;
+  std::string plain =
+      json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string redacted = WithoutKey(plain);
+  return redacted == plain ? body : redacted;
 }
 
 }  // namespace terra::advisor

@@ -14,7 +14,10 @@ namespace terra::advisor {
 /// How a provider is called.
 struct ProviderOptions {
   GenerationSettings settings;
-  std::string base_url;        ///< Empty = the provider's own.
+  std::string base_url;  ///< Empty = the provider's own.
+  /// What answers on this machine is a real model, not something that plays
+  /// one.
+  bool real_model = false;
   double try_timeout_s = 600;  ///< Of one request.
   double deadline_s = 900;     ///< Of a call, retries and waits included.
   RetryLimits retry;
@@ -41,6 +44,7 @@ class ProviderClient : public LlmClient {
   TryOutcome Try(const HttpRequest& request, LlmReply& reply,
                  std::stop_token stop);
   std::string WithoutKey(std::string text) const;
+  std::string BodyWithoutKey(std::string body) const;
 
   std::unique_ptr<WireFormat> format_;
   ProviderOptions options_;

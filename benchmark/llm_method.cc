@@ -7,6 +7,7 @@
 
 #include "advisor/answer_parser.h"
 #include "advisor/llm_methods.h"
+#include "advisor/llm_rounds.h"
 #include "advisor/polish.h"
 #include "advisor/prompt.h"
 #include "benchmark/single_search.h"
@@ -76,12 +77,13 @@ class LlmMethod : public Method {
         advisor::PrepareCase(planning_case, options_, pool_.get());
     attempt.t_prep = prepare.Seconds();
     prepared.request.repeat = input.repeat;
-    attempt.request_hash =
-        advisor::RequestHash(service_.client->identity(), prepared.request);
-    const advisor::LlmReply reply = service_.client->Ask(prepared.request, {});
-    KeepReply(reply, attempt);
+    const advisor::AskedCase asked = advisor::AskInRounds(
+        planning_case, options_, prepared.request, *service_.client, {});
+    attempt.request_hash = asked.request_hash;
+    KeepReply(asked.reply, attempt);
+    // Read once more, to be timed: T_det has the parsing and the native legs.
     const Stopwatch read;
-    Read(planning_case, input, reply, attempt);
+    Read(planning_case, input, asked.reply, attempt);
     attempt.t_det = read.Seconds();
     return attempt;
   }
@@ -179,6 +181,7 @@ std::string SettingsJson(const MethodOptions& options,
       {"regions", prompt.regions},
       {"stretches", prompt.stretches},
       {"candidates", prompt.candidates},
+      {"rounds", options.rounds},
       {"noise", options.noise_percent},
       {"seed", options.seed},
       {"polish", polish}};
@@ -212,13 +215,15 @@ Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
     pool = *std::move(loaded);
   }
   const advisor::LlmIdentity identity = service->client->identity();
+  MethodOptions method = options.method;
+  method.rounds_deadline_s = options.service.provider.deadline_s;
   LlmMethodChoice made;
   made.settings_json =
       SettingsJson(options.method, identity, pool, form.polish);
   made.choice.info = InfoOf(options, identity, form);
   // The one client goes to whoever makes the method first.
   auto held = std::make_shared<advisor::LlmService>(*std::move(service));
-  made.choice.make = [held, method = options.method, pool,
+  made.choice.make = [held, method, pool,
                       form]() -> Result<std::unique_ptr<Method>> {
     TERRA_REQUIRE(held->client != nullptr);  // One at a time, --jobs 1.
     return std::unique_ptr<Method>(

@@ -75,9 +75,7 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   const auto push = [&](std::size_t index, Key key, Key total, int x, int y,
                         std::size_t arrival) {
     labels_[index] = Label{key, search_};
-    queue_.Push(total, Entry{key, static_cast<std::uint32_t>(x) & 0x1fff,
-                             static_cast<std::uint32_t>(y) & 0x1fff,
-                             static_cast<std::uint32_t>(arrival) & 0xf});
+    queue_.Push(total, Entry(key, x, y, arrival));
   };
 
   const Key least = to_goal(start.x, start.y);
@@ -93,8 +91,8 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
        kNoArrival);
   while (!queue_.empty() && queue_.floor() < bound) {
     const Entry entry = queue_.Pop();
-    const int x = static_cast<int>(entry.x);
-    const int y = static_cast<int>(entry.y);
+    const int x = entry.x();
+    const int y = entry.y();
     const std::size_t index = map.cost_grid().Index(Cell{x, y});
     const bool improved_since = labels_[index].key != entry.key;
     if (improved_since ||
@@ -104,7 +102,8 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
     ++attempt.expanded;
     const StepSets& sets =
         grid.InUniformBlock(index) ? kNaturalSteps : kAllSteps;
-    for (unsigned steps = sets[entry.arrival]; steps != 0; steps &= steps - 1) {
+    for (unsigned steps = sets[entry.arrival()]; steps != 0;
+         steps &= steps - 1) {
       const auto d = static_cast<std::size_t>(std::countr_zero(steps));
       const std::size_t next = grid.Neighbour(index, d);
       const std::uint16_t code = grid.Code(next);

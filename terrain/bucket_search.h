@@ -36,10 +36,21 @@ class BucketSearch {
     Key key;               // Of the best path found to the cell.
     std::uint32_t search;  // The search that found it.
   };
-  // 13 bits each for x and y, 4 for the direction of arrival.
+  // A label in the queue. Packed by hand, as compilers write bit-fields one by
+  // one and then wait for what they wrote: 13 bits each for x and y, then the
+  // step of arrival.
   struct Entry {
+    Entry(Key label_key, int cell_x, int cell_y, std::size_t step)
+        : key(label_key),
+          packed(static_cast<std::uint32_t>(cell_x) |
+                 static_cast<std::uint32_t>(cell_y) << 13 |
+                 static_cast<std::uint32_t>(step) << 26) {}
+    int x() const { return static_cast<int>(packed & 0x1fff); }
+    int y() const { return static_cast<int>(packed >> 13 & 0x1fff); }
+    std::size_t arrival() const { return packed >> 26; }
+
     Key key;
-    std::uint32_t x : 13, y : 13, arrival : 4;
+    std::uint32_t packed;
   };
 
   void Prepare(std::size_t num_cells);

@@ -43,16 +43,20 @@ bool MayHoldResult(const Query& query) {
           Keys(query.map).KeyAbove(query.options.upper_bound) < Keys::kLimit);
 }
 
-// A* expands few cells where a route is hardly dearer than the empty map's, and
-// vectors of four cells do not make up for the cells it leaves out.
+// Wide vectors sweep a map in less time than A* takes in all but the easiest
+// cases, which nothing tells from those where A* expands most of the map.
+// Vectors of four cells do where a known cost leaves out cells, unless it is so
+// near the empty map's cost that A* leaves out more (measured on generated
+// maps, docs/performance.md).
 bool PreferBuckets(const Query& query) {
-  if (query.options.instructions == InstructionSet::kPortable) {
-    return true;
+  if (query.options.instructions != InstructionSet::kPortable) {
+    return false;
   }
-  constexpr double kNear = 1.02;
+  constexpr double kNear = 1.5;
   const double octile = OctileBound<DoubleKeys>(
       DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
-  return query.options.upper_bound <= kNear * octile;
+  return query.options.upper_bound == kImpassable ||
+         query.options.upper_bound <= kNear * octile;
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "terrain/route_cost.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <numbers>
+#include <utility>
 
 #include "terrain/require.h"
 #include "terrain/segment.h"
@@ -8,37 +11,33 @@
 namespace terra {
 namespace {
 
-// Sums of the costs of the cells entered by straight and by diagonal steps.
-class ExactSum {
+// What routes are summed in: exact integers where the legend has them.
+class ExactUnits {
  public:
-  explicit ExactSum(const CostTable& table) : table_(table) {}
-  void Add(std::uint8_t cost_class, bool diagonal) {
-    (diagonal ? diagonal_ : straight_) += table_.units[cost_class];
-  }
-  double value() const {
-    return (static_cast<double>(straight_) +
-            static_cast<double>(diagonal_) * std::numbers::sqrt2) /
+  using Sum = std::int64_t;
+  explicit ExactUnits(const CostTable& table) : table_(table) {}
+  Sum Of(std::uint8_t cost_class) const { return table_.units[cost_class]; }
+  double Cost(Sum straight, Sum diagonal) const {
+    return (static_cast<double>(straight) +
+            static_cast<double>(diagonal) * std::numbers::sqrt2) /
            table_.scale;
   }
 
  private:
   const CostTable& table_;
-  std::int64_t straight_ = 0;
-  std::int64_t diagonal_ = 0;
 };
 
-class DoubleSum {
+class Doubles {
  public:
-  explicit DoubleSum(const CostTable& table) : table_(table) {}
-  void Add(std::uint8_t cost_class, bool diagonal) {
-    (diagonal ? diagonal_ : straight_) += table_.cost[cost_class];
+  using Sum = double;
+  explicit Doubles(const CostTable& table) : table_(table) {}
+  Sum Of(std::uint8_t cost_class) const { return table_.cost[cost_class]; }
+  double Cost(Sum straight, Sum diagonal) const {
+    return straight + diagonal * std::numbers::sqrt2;
   }
-  double value() const { return straight_ + diagonal_ * std::numbers::sqrt2; }
 
  private:
   const CostTable& table_;
-  double straight_ = 0;
-  double diagonal_ = 0;
 };
 
 RouteFault FaultAt(const TerrainMap& map, Cell cell) {
@@ -60,49 +59,123 @@ RouteFault FaultOfStep(const TerrainMap& map, Cell from, Cell to) {
   return free ? RouteFault::kNone : RouteFault::kObstacle;
 }
 
-template <typename Sum>
-RouteWalk Walk(const TerrainMap& map, std::span<const Cell> route,
-               std::int64_t max_steps) {
-  RouteWalk walk;
-  const auto fail = [&walk](RouteFault fault, std::size_t segment, Cell cell) {
-    walk.fault = fault;
-    walk.segment = static_cast<int>(segment);
-    walk.cell = cell;
-    return walk;
-  };
-  const RouteFault first = FaultAt(map, route[0]);
-  if (first != RouteFault::kNone) {
-    return fail(first, 0, route[0]);
+// One walk along a route: sums what it enters, segment by segment, and stops at
+// the first fault.
+template <typename Costs>
+class Walker {
+ public:
+  Walker(const TerrainMap& map, std::int64_t max_steps)
+      : map_(map), costs_(map.costs()), max_steps_(max_steps) {}
+
+  RouteWalk Run(std::span<const Cell> route) {
+    const RouteFault first = FaultAt(map_, route[0]);
+    if (first != RouteFault::kNone) {
+      Fail(first, 0, route[0]);
+      return walk_;
+    }
+    for (std::size_t i = 1; i < route.size(); ++i) {
+      if (!SumSegment(route[i - 1], route[i]) &&
+          !StepAlong(route[i - 1], route[i], i - 1)) {
+        return walk_;
+      }
+    }
+    walk_.cost = costs_.Cost(straight_, diagonal_);
+    return walk_;
   }
-  Sum sum(map.costs());
-  for (std::size_t i = 1; i < route.size(); ++i) {
-    SegmentCells cells(route[i - 1], route[i]);
+
+ private:
+  using Sum = typename Costs::Sum;
+
+  void Fail(RouteFault fault, std::size_t segment, Cell cell) {
+    walk_.fault = fault;
+    walk_.segment = static_cast<int>(segment);
+    walk_.cell = cell;
+  }
+
+  // The common case, fast: adds a segment that has no fault. Returns false, and
+  // adds nothing, when it may have one. Pre: `from` inside and passable.
+  //
+  // Visits the cells of SegmentCells, which stay between the ends: a step along
+  // the longer side each time, and along the shorter one when twice the error
+  // is at most the longer side.
+  bool SumSegment(Cell from, Cell to) {
+    const std::int64_t steps = ChebyshevDistance(from, to);
+    if (!map_.Contains(to) || steps > max_steps_ - walk_.steps) {
+      return false;
+    }
+    const int dx = std::abs(to.x - from.x);
+    const int dy = std::abs(to.y - from.y);
+    std::ptrdiff_t along_longer = to.x < from.x ? -1 : 1;
+    std::ptrdiff_t along_shorter = to.y < from.y ? -map_.width() : map_.width();
+    if (dx < dy) {
+      std::swap(along_longer, along_shorter);
+    }
+    const int longer = std::max(dx, dy);
+    const int shorter = std::min(dx, dy);
+    const bool corner_cutting = map_.cost_model().corner_cutting;
+    const std::uint8_t* cell = &map_.classes()(from.y, from.x);
+    int error = longer - shorter;
+    bool blocked = false;
+    Sum straight{};
+    Sum diagonal{};
+    for (int k = 0; k < longer; ++k) {
+      const bool both = 2 * error <= longer;
+      if (!corner_cutting && both) {
+        blocked |= cell[along_longer] == 0 || cell[along_shorter] == 0;
+      }
+      error += both ? longer - shorter : -shorter;
+      cell += both ? along_longer + along_shorter : along_longer;
+      blocked |= *cell == 0;
+      const Sum entered = costs_.Of(*cell);
+      straight += both ? Sum{} : entered;
+      diagonal += both ? entered : Sum{};
+    }
+    if (blocked) {
+      return false;
+    }
+    straight_ += straight;
+    diagonal_ += diagonal;
+    walk_.steps += steps;
+    return true;
+  }
+
+  // The same cell by cell. Returns false where there is a fault, and tells it.
+  bool StepAlong(Cell begin, Cell end, std::size_t segment) {
+    SegmentCells cells(begin, end);
     while (!cells.done()) {
       const Cell from = cells.cell();
       cells.Next();
       const Cell to = cells.cell();
-      if (walk.steps >= max_steps) {
-        return fail(RouteFault::kWorkLimit, i - 1, to);
-      }
-      const RouteFault fault = FaultOfStep(map, from, to);
+      const RouteFault fault = walk_.steps >= max_steps_
+                                   ? RouteFault::kWorkLimit
+                                   : FaultOfStep(map_, from, to);
       if (fault != RouteFault::kNone) {
-        return fail(fault, i - 1, to);
+        Fail(fault, segment, to);
+        return false;
       }
-      sum.Add(map.classes()(to.y, to.x), from.x != to.x && from.y != to.y);
-      ++walk.steps;
+      const bool diagonal = from.x != to.x && from.y != to.y;
+      (diagonal ? diagonal_ : straight_) +=
+          costs_.Of(map_.classes()(to.y, to.x));
+      ++walk_.steps;
     }
+    return true;
   }
-  walk.cost = sum.value();
-  return walk;
-}
+
+  const TerrainMap& map_;
+  Costs costs_;
+  std::int64_t max_steps_;
+  RouteWalk walk_;
+  Sum straight_{};
+  Sum diagonal_{};
+};
 
 }  // namespace
 
 RouteWalk WalkRoute(const TerrainMap& map, std::span<const Cell> route,
                     std::int64_t max_steps) {
   TERRA_REQUIRE(!route.empty());
-  return map.costs().scale != 0 ? Walk<ExactSum>(map, route, max_steps)
-                                : Walk<DoubleSum>(map, route, max_steps);
+  return map.costs().scale != 0 ? Walker<ExactUnits>(map, max_steps).Run(route)
+                                : Walker<Doubles>(map, max_steps).Run(route);
 }
 
 double SegmentCost(const TerrainMap& map, Cell from, Cell to) {

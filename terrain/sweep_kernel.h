@@ -9,89 +9,15 @@
 // where the row it is relaxed from has changed since it last was.
 
 #include <cstdint>
-#include <utility>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
+#include "terrain/sweep_lanes.h"
 #include "terrain/sweep_task.h"
 
 namespace terra {
 namespace {
 
-using Lanes [[gnu::vector_size(4 * kLanes)]] = std::uint32_t;
-using Codes [[gnu::vector_size(2 * kLanes)]] = std::uint16_t;
-
-template <typename Vector, typename Element>
-Vector Load(const Element* from) {
-  Vector lanes;
-  __builtin_memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-
-void Store(std::uint32_t* to, Lanes lanes) {
-  __builtin_memcpy(to, &lanes, sizeof(lanes));
-}
-
-Lanes Splat(std::uint32_t value) {
-  return Lanes{} + value;
-}
-
-Lanes Min(Lanes a, Lanes b) {
-  return a < b ? a : b;
-}
-Lanes Max(Lanes a, Lanes b) {
-  return a < b ? b : a;
-}
-
-// Whether a is below b in any lane.
-bool AnyBelow(Lanes a, Lanes b) {
-#if defined(__AVX512F__)
-  return _mm512_cmplt_epu32_mask(reinterpret_cast<__m512i>(a),
-                                 reinterpret_cast<__m512i>(b)) != 0;
-#elif defined(__AVX2__)
-  return _mm256_movemask_epi8(reinterpret_cast<__m256i>(a < b)) != 0;
-#elif defined(__SSE2__)
-  return _mm_movemask_epi8(reinterpret_cast<__m128i>(a < b)) != 0;
-#else
-  const auto below = a < b;
-  bool any = false;
-  for (int i = 0; i < kLanes; ++i) {
-    any = any || below[i] != 0;
-  }
-  return any;
-#endif
-}
-
-// kLanes lanes of two vectors side by side, from lane kFrom on.
-template <int kFrom, int... kLane>
-Lanes Window(Lanes west, Lanes east, std::integer_sequence<int, kLane...>) {
-  return __builtin_shufflevector(west, east, (kFrom + kLane)...);
-}
-
-using AllLanes = std::make_integer_sequence<int, kLanes>;
-
-// The way along a row in which keys are handed on.
-struct East {
-  // Lane i gets lane i - kBy; the first kBy lanes get those of `entering`.
-  template <int kBy>
-  static Lanes Move(Lanes lanes, Lanes entering) {
-    return Window<kLanes - kBy>(entering, lanes, AllLanes());
-  }
-  static constexpr int kStep = 1;
-  static constexpr int kLast = kLanes - 1;
-};
-struct West {
-  template <int kBy>
-  static Lanes Move(Lanes lanes, Lanes entering) {
-    return Window<kBy>(lanes, entering, AllLanes());
-  }
-  static constexpr int kStep = -1;
-  static constexpr int kLast = 0;
-};
-
-// One bit per block of a row.
+// For sets of a row's blocks, one bit each; no map is wider than 8192 cells
+// (TerrainMap::kMaxSide).
 constexpr int kMaxWords = 8192 / kLanes / 64 + 1;
 
 class Sweeper {
@@ -112,8 +38,8 @@ class Sweeper {
     const int block = (task_.start_column - task_.first_column) / kLanes;
     std::uint64_t active[kMaxWords] = {};
     std::uint64_t changed[kMaxWords] = {};
-    active[block / 64] = std::uint64_t{1} << block % 64;
-    changed[block / 64] = active[block / 64];
+    SetBit(active, block);
+    SetBit(changed, block);
     RelaxRow(task_.start_row, 0, active, changed);
     int way = task_.goal_row < task_.start_row ? -1 : 1;
     Pass(way);
@@ -197,41 +123,14 @@ class Sweeper {
     return any != 0;
   }
 
-  // Relaxes the active blocks of a row from the row beside it, then lets what
-  // has changed spread along the row, first east, then west.
+  // Relaxes the active blocks of a row from the row beside it and lets what has
+  // changed spread along the row. Adds the blocks in which a key fell to
+  // `changed`; uses up `active`.
   void RelaxRow(int y, int from, std::uint64_t* active,
                 std::uint64_t* changed) {
-    for (int w = 0; w < num_words_; ++w) {
-      for (std::uint64_t bits = active[w]; bits != 0;) {
-        const int bit = __builtin_ctzll(bits);
-        bits &= bits - 1;
-        const int block = w * 64 + bit;
-        if (RelaxBlock<true, East>(y, from, block)) {
-          changed[w] |= std::uint64_t{1} << bit;
-        }
-        if ((changed[w] >> bit & 1) == 0 || !LeadsOn<East>(y, block)) continue;
-        if (bit < 63) {
-          bits |= std::uint64_t{2} << bit;
-        } else {
-          active[w + 1] |= 1;
-        }
-      }
-    }
-    for (int w = num_words_ - 1; w >= 0; --w) {
-      for (std::uint64_t bits = changed[w]; bits != 0;) {
-        const int bit = 63 - __builtin_clzll(bits);
-        bits ^= std::uint64_t{1} << bit;
-        const int block = w * 64 + bit;
-        RelaxBlock<false, West>(y, from, block);
-        if (!LeadsOn<West>(y, block)) continue;
-        if (bit > 0) {
-          bits |= std::uint64_t{1} << (bit - 1);
-          changed[w] |= std::uint64_t{1} << (bit - 1);
-        } else {
-          changed[w - 1] |= std::uint64_t{1} << 63;
-        }
-      }
-    }
+    std::uint64_t improved_from_east[kMaxWords] = {};
+    RelaxEastward(y, from, active, changed, improved_from_east);
+    SpreadWestward(y, improved_from_east, changed);
     for (int w = 0; w < num_words_; ++w) {
       Pending(1, y)[w] |= changed[w];
       Pending(-1, y)[w] |= changed[w];
@@ -240,6 +139,57 @@ class Sweeper {
       task_.bound = Row(y)[task_.goal_column];
       task_.found = true;
     }
+  }
+
+  // From west to east, where keys that are handed on activate the next block.
+  // Notes the blocks to which keys are to be handed on westward.
+  void RelaxEastward(int y, int from, std::uint64_t* active,
+                     std::uint64_t* changed,
+                     std::uint64_t* improved_from_east) {
+    for (int w = 0; w < num_words_; ++w) {
+      while (active[w] != 0) {
+        const int block = w * 64 + __builtin_ctzll(active[w]);
+        active[w] &= active[w] - 1;
+        if (RelaxFromRow(y, from, block)) {
+          SetBit(changed, block);
+        }
+        if (!HasBit(changed, block)) {
+          continue;
+        }
+        if (LeadsOn<East>(y, block)) {
+          SetBit(active, block + 1);
+        }
+        if (LeadsOn<West>(y, block)) {
+          SetBit(improved_from_east, block - 1);
+        }
+      }
+    }
+  }
+
+  // From east to west, over the few blocks that have a use for it.
+  void SpreadWestward(int y, std::uint64_t* improved_from_east,
+                      std::uint64_t* changed) {
+    for (int w = num_words_ - 1; w >= 0; --w) {
+      while (improved_from_east[w] != 0) {
+        const int bit = 63 - __builtin_clzll(improved_from_east[w]);
+        const int block = w * 64 + bit;
+        improved_from_east[w] ^= std::uint64_t{1} << bit;
+        if (!SpreadFromEast(y, block)) {
+          continue;
+        }
+        SetBit(changed, block);
+        if (LeadsOn<West>(y, block)) {
+          SetBit(improved_from_east, block - 1);
+        }
+      }
+    }
+  }
+
+  static void SetBit(std::uint64_t* words, int block) {
+    words[block / 64] |= std::uint64_t{1} << block % 64;
+  }
+  static bool HasBit(const std::uint64_t* words, int block) {
+    return (words[block / 64] >> block % 64 & 1) != 0;
   }
 
   // Whether the last cell of a block improves the next block's first.
@@ -257,34 +207,44 @@ class Sweeper {
            key + OctileBound(y, x) < task_.bound;
   }
 
-  // Relaxes a block along its row, if kFromRow also from the row `from`.
-  // Returns whether any key fell.
-  template <bool kFromRow, typename Way>
-  bool RelaxBlock(int y, int from, int block) {
-    task_.visited += kLanes;
+  // Relaxes a block from the row `from`, then hands keys on along the row: east
+  // from the block before, west within the block. Returns whether any key fell.
+  bool RelaxFromRow(int y, int from, int block) {
     const int x = task_.first_column + block * kLanes;
-    std::uint32_t* row = Row(y) + x;
     const Lanes units = Units(y, x);
     const Lanes straight = Weights(units, task_.straight_per_unit);
-    const Lanes old = Load<Lanes>(row);
-    Lanes keys = old;
-    if constexpr (kFromRow) {
-      const std::uint32_t* beside = Row(from) + x;
-      const Lanes diagonal = Weights(units, task_.diagonal_per_unit);
-      keys = Min(keys, Load<Lanes>(beside) + straight);
-      keys = Min(keys, DiagonalPredecessors(y, from, x) + diagonal);
-    }
-    keys = Spread<Way>(keys, straight, Load<Lanes>(row - Way::kStep * kLanes));
-    // A path over a cell whose total reaches the bound is not wanted.
+    const Lanes diagonal = Weights(units, task_.diagonal_per_unit);
+    Lanes keys = Load<Lanes>(Row(y) + x);
+    keys = Min(keys, Load<Lanes>(Row(from) + x) + straight);
+    keys = Min(keys, DiagonalPredecessors(y, from, x) + diagonal);
+    keys = Spread<East>(keys, straight, Load<Lanes>(Row(y) + x - kLanes));
+    keys = Spread<West>(keys, straight, limit_);
+    return StoreWanted(y, x, keys);
+  }
+
+  // Hands keys on from the block to the east. Returns whether any key fell.
+  bool SpreadFromEast(int y, int block) {
+    const int x = task_.first_column + block * kLanes;
+    const Lanes straight = Weights(Units(y, x), task_.straight_per_unit);
+    return StoreWanted(y, x,
+                       Spread<West>(Load<Lanes>(Row(y) + x), straight,
+                                    Load<Lanes>(Row(y) + x + kLanes)));
+  }
+
+  // Stores the keys that fell, but for those on paths that are not wanted: over
+  // a cell whose total reaches the bound. Returns whether there were any.
+  bool StoreWanted(int y, int x, Lanes keys) {
+    task_.visited += kLanes;
+    const Lanes old = Load<Lanes>(Row(y) + x);
     const Lanes octile = Max(Load<Lanes>(task_.along_x + x) + task_.turn_y[y],
                              Load<Lanes>(task_.turn_x + x) + task_.along_y[y]);
-    keys = keys < limit_ ? keys : limit_;
+    keys = Min(keys, limit_);
     keys = keys + octile < Splat(task_.bound) ? keys : old;
     keys = Min(keys, old);
     if (!AnyBelow(keys, old)) {
       return false;
     }
-    Store(row, keys);
+    Store(Row(y) + x, keys);
     return true;
   }
 

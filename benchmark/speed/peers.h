@@ -20,7 +20,5 @@ std::unique_ptr<Peer> MakeBoostPeer(const ArcGraph& graph);
 /// lemon::Dijkstra on a StaticDigraph, arcs reduced by the octile bound when
 /// they are looked at, which makes it A*.
 std::unique_ptr<Peer> MakeLemonPeer(const ArcGraph& graph);
-/// A* as a textbook has it: std::priority_queue, fresh vectors.
-std::unique_ptr<Peer> MakeTextbookPeer(const ArcGraph& graph);
 
 }  // namespace terra::benchmark

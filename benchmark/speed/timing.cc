@@ -3,7 +3,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace terra::benchmark {
 namespace {
@@ -15,40 +14,33 @@ double ThreadMicroseconds() {
          static_cast<double>(now.tv_nsec) * 1e-3;
 }
 
-std::vector<double>& SeriesNamed(const std::string& name,
-                                 std::vector<TimedSeries>& series) {
-  const auto found =
-      std::find_if(series.begin(), series.end(), [&](const TimedSeries& s) {
-        return s.name == name;
-      });
-  if (found != series.end()) {
-    return found->microseconds;
-  }
-  return series.emplace_back(TimedSeries{name, {}}).microseconds;
+double Median(std::vector<double> values) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
 
-double TimedSeries::Quantile(double q) const {
-  std::vector<double> sorted = microseconds;
-  std::sort(sorted.begin(), sorted.end());
-  const double rank = std::ceil(q * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
-
-void TimeInterleaved(const std::vector<TimedWork>& works, int rounds,
-                     std::vector<TimedSeries>& series) {
-  std::vector<TimedSeries> runs;
+std::vector<TimedSample> TimeInterleaved(const std::vector<TimedWork>& works,
+                                         int rounds) {
+  std::vector<std::vector<double>> times(works.size());
   for (int round = 0; round < rounds; ++round) {
-    for (const TimedWork& work : works) {
+    for (std::size_t i = 0; i < works.size(); ++i) {
       const double start = ThreadMicroseconds();
-      work.run();
-      SeriesNamed(work.name, runs).push_back(ThreadMicroseconds() - start);
+      for (int call = 0; call < works[i].calls; ++call) {
+        works[i].run();
+      }
+      times[i].push_back((ThreadMicroseconds() - start) / works[i].calls);
     }
   }
-  for (const TimedSeries& run : runs) {
-    SeriesNamed(run.name, series).push_back(run.Quantile(0.5));
+  std::vector<TimedSample> samples;
+  for (std::size_t i = 0; i < works.size(); ++i) {
+    samples.push_back(
+        {works[i].name, Median(std::move(times[i])), works[i].amount});
   }
+  return samples;
 }
 
 }  // namespace terra::benchmark

@@ -6,25 +6,28 @@
 
 namespace terra::benchmark {
 
-/// A piece of work under a name. Its result must be used by the caller, so that
-/// no compiler can leave it out.
+/// A piece of work under a name. `run` checks or uses its result, so that no
+/// compiler can leave the work out.
 struct TimedWork {
   std::string name;
   std::function<void()> run;
+  /// Calls timed together, for work too short for the clock.
+  int calls = 1;
+  /// What one call works on, in cells or bytes; for rates.
+  double amount = 1;
 };
 
-/// Times of one piece of work over all maps, in microseconds, one per map.
-struct TimedSeries {
+/// Time of one call.
+struct TimedSample {
   std::string name;
-  std::vector<double> microseconds;
-
-  double Quantile(double q) const;  ///< Nearest rank. Pre: not empty.
+  double microseconds = 0;
+  double amount = 1;
 };
 
-/// Runs the works in turn, `rounds` times (A B C, A B C, ...), so that what
-/// else the machine does falls on all of them; adds each one's median of this
-/// thread's CPU time to its series, found by name.
-void TimeInterleaved(const std::vector<TimedWork>& works, int rounds,
-                     std::vector<TimedSeries>& series);
+/// Runs the works in turn (A B C, A B C, ...), so that whatever else the
+/// machine does falls on all of them, and returns each one's median over the
+/// rounds. Units: this thread's CPU time. Pre: rounds >= 1.
+std::vector<TimedSample> TimeInterleaved(const std::vector<TimedWork>& works,
+                                         int rounds);
 
 }  // namespace terra::benchmark

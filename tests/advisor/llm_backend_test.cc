@@ -217,7 +217,8 @@ TEST(LlmBackendTest, AQuestionHasTheSameHashOnEveryMachine) {
   const PreparedCase prepared =
       PrepareCase(planning_case, {}, &ReferencePool::Builtin());
   const LlmIdentity identity{"openai", "gpt-5.5", "{}", "provider"};
-  EXPECT_EQ(RequestHash(identity, prepared.request), "8009723e0edb6bd3e7ba8464b0d4e4e6");
+  EXPECT_EQ(RequestHash(identity, prepared.request),
+            "8009723e0edb6bd3e7ba8464b0d4e4e6");
   EXPECT_EQ(PromptId(), "ccf9f13fdc39");
 }
 

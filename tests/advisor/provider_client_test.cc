@@ -9,8 +9,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 
+#include "tests/support/child_process.h"
 #include "tests/support/scripted_llm_server.h"
+#include "tests/support/temp_folder.h"
 
 namespace terra::advisor {
 namespace {
@@ -120,6 +124,61 @@ TEST_P(EveryProviderTest, TheKeyIsSentButNeverComesBack) {
     sent += name + ": " + value + "\n";
   }
   EXPECT_THAT(sent, HasSubstr(kSecret));
+}
+
+TEST(ProviderClientTest, AKeyWithEscapesIsCutOutOfTheReplyToo) {
+  setenv("OPENAI_API_KEY", "sk/secret/0123456789", 1);
+  ScriptedReply echo = Good("openai");
+  echo.body.insert(1, R"("you_sent":"sk\/secret\u002f0123456789",)");
+  ScriptedLlmServer server({echo});
+  auto client = Client("openai", server.url());
+  unsetenv("OPENAI_API_KEY");
+  const LlmReply reply = client->Ask(Question(), {});
+  EXPECT_EQ(reply.text, "Yes") << reply.error;
+  EXPECT_THAT(reply.body, HasSubstr("[key]"));
+  EXPECT_THAT(reply.body, Not(HasSubstr("0123456789")));
+}
+
+TEST(ProviderClientTest, AProcessWithAKeyLeavesNoCore) {
+  setenv("OPENAI_API_KEY", kSecret, 1);
+  Client("openai", "http://127.0.0.1:1");
+  unsetenv("OPENAI_API_KEY");
+  EXPECT_EQ(prctl(PR_GET_DUMPABLE), 0);
+  rlimit core{};
+  ASSERT_EQ(getrlimit(RLIMIT_CORE, &core), 0);
+  EXPECT_EQ(core.rlim_max, 0u);
+}
+
+TEST(ProviderClientTest, ACertificateThatNobodyVouchesForIsRefused) {
+  const testing::TempFolder folder;
+  const auto made = testing::RunToEnd(
+      {"sh", "-c",
+       "command -v openssl >/dev/null || exit 77; openssl req -x509 -nodes "
+       "-newkey ec -pkeyopt ec_paramgen_curve:P-256 -subj /CN=localhost "
+       "-keyout " +
+           folder.Path("key") + " -out " + folder.Path("cert")});
+  if (made.exit_code == 77) GTEST_SKIP() << "no openssl command";
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  testing::ChildProcess server({"openssl", "s_server", "-accept", "127.0.0.1:0",
+                                "-cert", folder.Path("cert"), "-key",
+                                folder.Path("key"), "-www"});
+  std::string port;  // "ACCEPT 127.0.0.1:PORT"
+  for (int i = 0; port.empty() && i < 2'000; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const std::string said = server.output();
+    const std::size_t at = said.find("ACCEPT 127.0.0.1:");
+    const std::size_t end = said.find('\n', at);
+    if (at != std::string::npos && end != std::string::npos) {
+      port = said.substr(at + 17, end - at - 17);
+    }
+  }
+  ASSERT_FALSE(port.empty()) << server.output();
+  HttpTransport http;
+  HttpRequest request;
+  request.url = "https://127.0.0.1:" + port;
+  const HttpReply reply = http.Post(request, {});
+  EXPECT_EQ(reply.fault, TransportFault::kRefused) << reply.fault_text;
+  EXPECT_THAT(reply.fault_text, HasSubstr("certificate"));
 }
 
 TEST(ProviderClientTest, ARefusedKeyIsNotTriedAgain) {
@@ -267,6 +326,21 @@ TEST(ProviderClientTest, RealProvidersNeedAKey) {
   }
 }
 
+TEST(ProviderClientTest, AServerOnThisMachineIsNoRealModelUnlessSaid) {
+  ProviderOptions options;
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "loopback");
+  options.real_model = true;
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "loopback-model");
+  options.base_url = "https://example.org";
+  EXPECT_EQ(
+      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
+      "other");
+}
+
 TEST(ProviderClientTest, PlainHttpIsForThisMachineOnly) {
   EXPECT_EQ(CheckBaseUrl("http://127.0.0.1:80").value(), "loopback");
   EXPECT_EQ(CheckBaseUrl("http://localhost").value(), "loopback");
@@ -275,7 +349,8 @@ TEST(ProviderClientTest, PlainHttpIsForThisMachineOnly) {
   for (const char* bad :
        {"http://example.org", "http://127.0.0.1.example.org",
         "http://localhost.example.org", "ftp://127.0.0.1", "file:///etc/passwd",
-        "https://user:secret@example.org", "", "http://"}) {
+        "https://user:secret@example.org", "https://example.org/?key=secret",
+        "", "http://"}) {
     EXPECT_FALSE(CheckBaseUrl(bad).ok()) << bad;
   }
 }

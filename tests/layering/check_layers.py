@@ -25,6 +25,9 @@ ALLOWED = {
     "logger": {"terrain", "verifier", "bus", "terra_msg"},
     "benchmark": {"terrain", "terrain/files", "planner", "advisor",
                   "verifier"},
+    # A program that measures all of it.
+    "benchmark/speed": {"terrain", "planner", "advisor", "verifier",
+                        "benchmark", "bus"},
     "cli": {"terrain", "terrain/files", "planner", "advisor", "verifier",
             "logger", "benchmark", "bus", "terra_msg"},
 }
@@ -50,8 +53,9 @@ LIBRARIES = {
 
 
 def folder_of(path):
-    if path.startswith("terrain/files/"):
-        return "terrain/files"
+    for folder in ("terrain/files", "benchmark/speed"):
+        if path.startswith(folder + "/"):
+            return folder
     return path.split("/")[0]
 
 

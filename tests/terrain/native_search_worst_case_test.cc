@@ -3,82 +3,33 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "benchmark/worst_case_maps.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/native_search.h"
 #include "terrain/reference_search.h"
-#include "tests/support/random_map.h"
 #include "tests/terrain/search_agreement.h"
 
 namespace terra {
 namespace {
 
+using benchmark::ClosedRoom;
+using benchmark::ColumnSerpentine;
+using benchmark::NoiseOfCosts;
+using benchmark::RowSerpentine;
+using benchmark::Spiral;
+using benchmark::WorstCase;
 using testing::AllSearchWays;
 using testing::AllWaysAgree;
 using testing::SearchWay;
 
-constexpr std::uint8_t kWall = 11;
 constexpr std::uint8_t kDearest = 10;
 
-struct Case {
-  ByteRaster ids;
-  Cell start;
-  Cell goal;
-};
-
-// One corridor a cell wide that fills the map, turning at alternate ends.
-Case RowSerpentine(int side, std::uint8_t ground) {
-  Case c{ByteRaster::Constant(side, side, ground), {0, 0}, {}};
-  int turn = side - 1;
-  for (int y = 1; y < side; y += 2) {
-    c.ids.row(y).setConstant(kWall);
-    if (y + 1 < side) {
-      c.ids(y, turn) = ground;
-      turn = side - 1 - turn;
-      c.goal = {turn, y + 1};
-    }
-  }
-  return c;
-}
-
-Case ColumnSerpentine(int side, std::uint8_t ground) {
-  Case c = RowSerpentine(side, ground);
-  c.ids.transposeInPlace();
-  std::swap(c.goal.x, c.goal.y);
-  return c;
-}
-
-// A corridor from the corner to the middle: walls in rings, one gap each.
-Case Spiral(int side, std::uint8_t ground) {
-  Case c{ByteRaster::Constant(side, side, ground), {0, 0}, {}};
-  bool low = false;
-  for (int ring = 1; 2 * ring < side - 2; ring += 2) {
-    const int length = side - 2 * ring;
-    c.ids.row(ring).segment(ring, length).setConstant(kWall);
-    c.ids.row(side - 1 - ring).segment(ring, length).setConstant(kWall);
-    c.ids.col(ring).segment(ring, length).setConstant(kWall);
-    c.ids.col(side - 1 - ring).segment(ring, length).setConstant(kWall);
-    const int gap = low ? ring + 1 : side - 2 - ring;
-    c.ids(gap, low ? ring : side - 1 - ring) = ground;
-    low = !low;
-  }
-  c.goal = {side / 2, side / 2};
-  c.ids(c.goal.y, c.goal.x) = ground;
-  return c;
-}
-
-Case ClosedRoom(int side, std::uint8_t ground) {
-  Case c{ByteRaster::Constant(side, side, ground), {side / 2, side / 2}, {}};
-  const int low = side - 20;
-  c.ids.block(low, low, 11, 11).setConstant(kWall);
-  c.ids.block(low + 2, low + 2, 7, 7).setConstant(ground);
-  c.goal = {low + 4, low + 4};
-  return c;
-}
-
-TerrainMap MapOf(const Case& c, const Legend& legend = MultiTerraPathLegend()) {
+TerrainMap MapOf(const WorstCase& c,
+                 const Legend& legend = MultiTerraPathLegend()) {
   return TerrainMap::Create(c.ids, legend).value();
 }
 
@@ -96,8 +47,8 @@ Legend TenthsLegend() {
 
 TEST(NativeSearchWorstCaseTest, AgreesOnLongCorridors) {
   for (const std::uint8_t ground : {std::uint8_t{0}, kDearest}) {
-    for (const Case& c : {RowSerpentine(500, ground), Spiral(500, ground),
-                          ColumnSerpentine(500, ground)}) {
+    for (const WorstCase& c : {RowSerpentine(500, ground), Spiral(500, ground),
+                               ColumnSerpentine(500, ground)}) {
       EXPECT_TRUE(AllWaysAgree(MapOf(c), c.start, c.goal));
       EXPECT_TRUE(AllWaysAgree(MapOf(c), c.goal, c.start));
     }
@@ -107,8 +58,8 @@ TEST(NativeSearchWorstCaseTest, AgreesOnLongCorridors) {
 TEST(NativeSearchWorstCaseTest, AgreesOnLongCorridorsWithCostsInTenths) {
   const Legend legend = TenthsLegend();
   for (const std::uint8_t ground : {std::uint8_t{0}, kDearest}) {
-    for (const Case& c : {RowSerpentine(500, ground), Spiral(500, ground),
-                          ColumnSerpentine(500, ground)}) {
+    for (const WorstCase& c : {RowSerpentine(500, ground), Spiral(500, ground),
+                               ColumnSerpentine(500, ground)}) {
       const TerrainMap map = MapOf(c, legend);
       ASSERT_EQ(map.costs().scale, 10);
       EXPECT_TRUE(AllWaysAgree(map, c.start, c.goal));
@@ -117,7 +68,7 @@ TEST(NativeSearchWorstCaseTest, AgreesOnLongCorridorsWithCostsInTenths) {
 }
 
 TEST(NativeSearchWorstCaseTest, AgreesThatAClosedRoomCannotBeReached) {
-  const Case c = ClosedRoom(300, 0);
+  const WorstCase c = ClosedRoom(300, 0);
   EXPECT_TRUE(AllWaysAgree(MapOf(c), c.start, c.goal));
   EXPECT_TRUE(AllWaysAgree(MapOf(c), c.goal, c.start));
   EXPECT_EQ(NativeSearch(MapOf(c), c.start, c.goal).status,
@@ -125,15 +76,12 @@ TEST(NativeSearchWorstCaseTest, AgreesThatAClosedRoomCannotBeReached) {
 }
 
 TEST(NativeSearchWorstCaseTest, AgreesWhereEveryCellCostsSomethingElse) {
-  testing::Random random(5);
-  const TerrainMap map =
-      RandomMap(random, 400, 400, testing::RandomMapKind::kNoise);
-  EXPECT_TRUE(AllWaysAgree(map, RandomPassableCell(random, map),
-                           RandomPassableCell(random, map)));
+  const WorstCase c = NoiseOfCosts(400, 5);
+  EXPECT_TRUE(AllWaysAgree(MapOf(c), c.start, c.goal));
 }
 
 TEST(NativeSearchWorstCaseTest, AKnownCostBeyondNarrowKeysSkipsThem) {
-  const Case c = RowSerpentine(500, kDearest);
+  const WorstCase c = RowSerpentine(500, kDearest);
   const TerrainMap map = MapOf(c);
   const double cost = NativeSearch(map, c.start, c.goal).cost;
   const SearchResult known =
@@ -145,7 +93,7 @@ TEST(NativeSearchWorstCaseTest, AKnownCostBeyondNarrowKeysSkipsThem) {
 }
 
 TEST(NativeSearchWorstCaseTest, AKnownCostWithinNarrowKeysNeedsNoOthers) {
-  const Case c = RowSerpentine(100, 0);
+  const WorstCase c = RowSerpentine(100, 0);
   const TerrainMap map = MapOf(c);
   const double cost = NativeSearch(map, c.start, c.goal).cost;
   NativeSearcher searcher;
@@ -158,9 +106,11 @@ TEST(NativeSearchWorstCaseTest, AKnownCostWithinNarrowKeysNeedsNoOthers) {
 }
 
 // A* looks at eight neighbours of each cell it expands; a sweep relaxes a cell
-// from its neighbours in one go. Each counts as one relaxation.
+// from its neighbours in one go. Each counts as one relaxation. (Where every
+// cell costs something else a sweep makes more of them, but many at a time: its
+// time is in docs/performance.md.)
 TEST(NativeSearchWorstCaseTest, NoWayWorksMoreThanTwiceAsMuchAsPlainAStar) {
-  for (const Case& c :
+  for (const WorstCase& c :
        {RowSerpentine(500, 0), ColumnSerpentine(500, 0), Spiral(500, 0),
         ColumnSerpentine(500, kDearest), ClosedRoom(500, 0)}) {
     const TerrainMap map = MapOf(c);
@@ -175,7 +125,7 @@ TEST(NativeSearchWorstCaseTest, NoWayWorksMoreThanTwiceAsMuchAsPlainAStar) {
 }
 
 TEST(NativeSearchLargeMapTest, AgreesOnSerpentinesOf4000Cells) {
-  for (const Case& c :
+  for (const WorstCase& c :
        {RowSerpentine(4000, 0), ColumnSerpentine(4000, kDearest)}) {
     const TerrainMap map = MapOf(c);
     const double cost = ReferenceSearch(map, c.start, c.goal).cost;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "benchmark/speed/speed_case.h"
+#include "benchmark/speed/timing.h"
+
+namespace terra::benchmark {
+
+/// The graph libraries' peers take a graph of 100 bytes a cell, so that they
+/// are left out on the largest maps.
+enum class Peers { kAll, kWithoutGraphs };
+
+/// Native searches in every form that this machine has, with and without the
+/// baseline's cost as upper bound, beside the peers and the floor. All costs
+/// found must agree, or it ends as for a bug.
+std::vector<TimedSample> TimeSearches(const SpeedCase& c, Peers peers,
+                                      int rounds);
+
+/// Searches for the worst cases, where some have no route: automatic choice and
+/// textbook A*.
+std::vector<TimedSample> TimeWorstCase(const SpeedCase& c, int rounds);
+
+/// Lattice, verification, shortcut, and the whole deterministic chain.
+std::vector<TimedSample> TimeChain(const SpeedCase& c, int rounds);
+
+/// What carries maps and questions: tile digests, tile compression, the text
+/// and pictures for an LLM.
+std::vector<TimedSample> TimeData(const SpeedCase& c, int rounds);
+
+}  // namespace terra::benchmark

@@ -1,0 +1,216 @@
+// Recordings and the exchange of files, at the level of clients.
+#include "advisor/recording.h"
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "advisor/exchange_client.h"
+#include "advisor/limited_client.h"
+#include "tests/support/temp_folder.h"
+
+namespace terra::advisor {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using testing::ReadBytes;
+using testing::TempFolder;
+
+LlmRequest Question(const std::string& text, int repeat = 0) {
+  LlmRequest request;
+  request.text = text;
+  request.method = "advisor";
+  request.case_id = "-5 [(1, 2), (3, 4)]";
+  request.repeat = repeat;
+  auto picture = std::make_shared<EncodedPicture>();
+  picture->png = "\x89PNG";
+  picture->pixel_hash = "hash";
+  request.pictures.push_back(std::move(picture));
+  return request;
+}
+
+// Says to each question that it was asked it.
+class Echo : public LlmClient {
+ public:
+  const LlmIdentity& identity() const override { return identity_; }
+  LlmReply Ask(const LlmRequest& request, std::stop_token) override {
+    ++calls;
+    LlmReply reply;
+    if (fails) {
+      reply.reason = NoAnswer::kTransport;
+      return reply;
+    }
+    reply.status = ReplyStatus::kAnswered;
+    reply.text = "to " + request.text + " \xff\n";
+    reply.body = "{\"bytes\":\"\xfe\"}";
+    reply.t_llm_s = 1.5;
+    reply.tries = 2;
+    return reply;
+  }
+
+  bool fails = false;
+  int calls = 0;
+
+ private:
+  LlmIdentity identity_{"openai", "m", "{}", "loopback"};
+};
+
+void Record(const std::string& path, const std::string& text) {
+  auto client = RecordingClient::Create(std::make_unique<Echo>(), path, false);
+  ASSERT_TRUE(client.ok());
+  (*client)->Ask(Question(text), {});
+}
+
+TEST(Recording, IsAddedToAndTheLastReplyCounts) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  Record(path, "a");
+  Record(path, "b");
+  auto replay = ReplayClient::Create(path, "");
+  ASSERT_TRUE(replay.ok());
+  EXPECT_THAT((*replay)->Ask(Question("a"), {}).text, HasSubstr("to a "));
+  EXPECT_EQ((*replay)->Ask(Question("b"), {}).t_llm_s, 1.5);
+  EXPECT_EQ((*replay)->Ask(Question("b", 1), {}).reason,
+            NoAnswer::kNotRecorded);
+  EXPECT_EQ(ReadRecordKeys(path).value().size(), 2u);
+}
+
+TEST(Recording, WhatAKilledWriterLeftIsCutOffBeforeTheNextLine) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  Record(path, "a");
+  const std::string whole = ReadBytes(path);
+  for (const std::size_t cut :
+       {std::size_t{1}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(path, std::ios::binary) << whole << whole.substr(0, cut);
+    Record(path, "b");
+    auto replay = ReplayClient::Create(path, "");
+    ASSERT_TRUE(replay.ok()) << cut;
+    EXPECT_TRUE((*replay)->Ask(Question("a"), {}).came());
+    EXPECT_TRUE((*replay)->Ask(Question("b"), {}).came());
+  }
+}
+
+TEST(Recording, ADamagedLineInItsMiddleIsNamed) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  Record(path, "a");
+  const std::string whole = ReadBytes(path);
+  std::ofstream(path, std::ios::binary) << whole << "{}\n" << whole;
+  const auto replay = ReplayClient::Create(path, "");
+  ASSERT_FALSE(replay.ok());
+  EXPECT_THAT(replay.error().message, HasSubstr("calls.jsonl:2: "));
+}
+
+TEST(Recording, CallsWithoutAnAnswerAreNotKept) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  auto echo = std::make_unique<Echo>();
+  echo->fails = true;
+  auto client = RecordingClient::Create(std::move(echo), path, false);
+  (*client)->Ask(Question("a"), {});
+  EXPECT_EQ(ReadBytes(path), "");
+}
+
+TEST(Recording, KeepsPicturesOnceUnderTheirHash) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  auto client = RecordingClient::Create(std::make_unique<Echo>(), path, true);
+  (*client)->Ask(Question("a"), {});
+  (*client)->Ask(Question("b"), {});
+  int pictures = 0;
+  for (const auto& entry : fs::directory_iterator(path + ".images")) {
+    ++pictures;
+    EXPECT_EQ(ReadBytes(entry.path()), "\x89PNG");
+  }
+  EXPECT_EQ(pictures, 1);
+}
+
+TEST(LimitedClientTest, RefusesAtOnceOnARobotAndWaitsInAnEvaluation) {
+  CallLimits limits;
+  limits.calls_per_minute = 1;
+  auto monitor = std::make_shared<CallMonitor>();
+  LimitedClient robot(std::make_unique<Echo>(), limits, {}, AtLimit::kRefuse,
+                      monitor);
+  EXPECT_TRUE(robot.Ask(Question("a"), {}).came());
+  EXPECT_EQ(robot.Ask(Question("a"), {}).reason, NoAnswer::kRateLimit);
+  EXPECT_EQ(monitor->figures().statistics.no_answers(), 1);
+  EXPECT_THAT(monitor->figures().last_error, HasSubstr("rate_limit"));
+
+  LimitedClient evaluation(std::make_unique<Echo>(), limits, {}, AtLimit::kWait,
+                           monitor);
+  EXPECT_TRUE(evaluation.Ask(Question("a"), {}).came());
+  std::stop_source stop;
+  stop.request_stop();  // Else the test would wait for a minute.
+  EXPECT_EQ(evaluation.Ask(Question("a"), stop.get_token()).reason,
+            NoAnswer::kCancelled);
+}
+
+class ExchangeTest : public ::testing::Test {
+ protected:
+  fs::path FolderOf(const LlmRequest& request) const {
+    return fs::path(options_.folder) /
+           ExchangeName(client_.identity(), request);
+  }
+
+  TempFolder folder_;
+  ExchangeOptions options_{.folder = folder_.Path("exchange"),
+                           .model = "exchange",
+                           .deadline_s = 20,
+                           .poll_s = 0.005};
+  ExchangeClient client_{options_};
+};
+
+TEST_F(ExchangeTest, AnAnswerThatIsThereIsNotAskedForAgain) {
+  const LlmRequest request = Question("a");
+  fs::create_directories(FolderOf(request));
+  std::ofstream(FolderOf(request) / "answer.txt") << "Yes\n";
+  const LlmReply reply = client_.Ask(request, {});
+  EXPECT_EQ(reply.text, "Yes\n");
+  EXPECT_FALSE(reply.timed) << "it says nothing of a model's time";
+  EXPECT_FALSE(fs::exists(FolderOf(request) / "prompt.txt"));
+}
+
+TEST_F(ExchangeTest, EachQuestionAndRepeatHasAFolderWithASafeName) {
+  const std::string name = ExchangeName(client_.identity(), Question("a"));
+  EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-"),
+            std::string::npos)
+      << name;
+  EXPECT_NE(name.front(), '-');
+  EXPECT_NE(name, ExchangeName(client_.identity(), Question("b")));
+  EXPECT_NE(name, ExchangeName(client_.identity(), Question("a", 1)));
+}
+
+TEST_F(ExchangeTest, CancellingEndsTheWaitAtOnce) {
+  std::stop_source stop;
+  std::jthread canceller([&] {
+    const fs::path prompt = FolderOf(Question("a")) / "prompt.txt";
+    while (!fs::exists(prompt)) std::this_thread::yield();
+    stop.request_stop();
+  });
+  EXPECT_EQ(client_.Ask(Question("a"), stop.get_token()).reason,
+            NoAnswer::kCancelled);
+}
+
+TEST_F(ExchangeTest, ATooLargeAnswerIsNone) {
+  const LlmRequest request = Question("a");
+  fs::create_directories(FolderOf(request));
+  std::ofstream(FolderOf(request) / "answer.txt") << std::string(2u << 20, 'x');
+  EXPECT_EQ(client_.Ask(request, {}).reason, NoAnswer::kTooLarge);
+}
+
+TEST_F(ExchangeTest, AFolderThatCannotBeWrittenIsSaid) {
+  ExchangeOptions options = options_;
+  options.folder = folder_.Write("file", "in the way");
+  ExchangeClient client(options);
+  const LlmReply reply = client.Ask(Question("a"), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kTransport);
+  EXPECT_THAT(reply.error, HasSubstr("cannot be written"));
+}
+
+}  // namespace
+}  // namespace terra::advisor

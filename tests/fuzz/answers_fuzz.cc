@@ -1,9 +1,10 @@
-// What comes from a model or from people as text: answers, routes, points, and
-// the providers' replies. The first byte chooses.
+// What comes from a model or from people as text: answers, routes, points,
+// recordings, the providers' replies and batch results. The first byte chooses.
 
 #include <array>
 
 #include "advisor/answer_parser.h"
+#include "advisor/batch_format.h"
 #include "advisor/recording.h"
 #include "advisor/wire_format.h"
 #include "terrain/route_text.h"
@@ -46,6 +47,15 @@ void CheckReply(std::string_view provider, std::string_view body) {
   format->ReadError(body);
 }
 
+void CheckBatchResult(std::string_view line) {
+  for (const std::string_view provider : {"openai", "anthropic", "gemini"}) {
+    const auto format = terra::advisor::MakeWireFormat(provider);
+    const auto result = terra::advisor::ReadBatchResult(*format, line);
+    terra::fuzz::Require(result.ok() || !result.error().message.empty(),
+                         "what is no result says why");
+  }
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -53,7 +63,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = terra::fuzz::Text(data + 1, size - 1);
   constexpr std::array<std::string_view, 4> kProviders = {"openai", "gemini",
                                                           "anthropic", "chat"};
-  switch (data[0] % 9) {
+  switch (data[0] % 10) {
     case 0:
       CheckAnswer(text, terra::advisor::AnswerStyle::kAdvice);
       break;
@@ -69,8 +79,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     case 4:
       terra::advisor::ParseRecord(text);
       break;
+    case 9:
+      CheckBatchResult(text);
+      break;
     default:
-      CheckReply(kProviders[data[0] % 9 - 5], text);
+      CheckReply(kProviders[data[0] % 10 - 5], text);
   }
   return 0;
 }

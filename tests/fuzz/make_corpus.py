@@ -96,3 +96,28 @@ save("answers", "chat", b'\x08{"choices":[{"message":{"content":"Yes"},'
      b'"finish_reason":"stop"}],"usage":{"prompt_tokens":5}}')
 save("answers", "error", b'\5{"error":{"message":"slow down","code":'
      b'"rate_limit_exceeded","type":"requests"}}')
+save("answers", "batch", b'\x09{"custom_id":"ab-0","response":{"status_code":'
+     b'200,"body":{"id":"r1","status":"completed","output":[]}},"error":null}')
+save("answers", "batch_error", b'\x09{"custom_id":"ab-0","result":{"type":'
+     b'"errored","error":{"type":"invalid_request"}}}')
+
+save("config", "advisor", b'\0backend="chat"\nrobot="R1"\npolish=false\n'
+     b'lcm-url="udpm://239.255.76.67:7667?ttl=0"\n')
+save("config", "unknown_key", b"\0no-such-option=1\n")
+save("config", "section", b"\0# c\n[a.b]\nc=[1, 2, 'x']\n")
+save("config", "url", b"\1udpm://239.255.76.67:7667?ttl=1&recv_buf_size=99")
+save("config", "url_last_port", b"\1udpm://:65535")
+
+
+def event(number, channel, data):
+    return struct.pack(">Iqqii", 0xEDA1DA01, number, 1000 * number,
+                       len(channel), len(data)) + channel.encode() + data
+
+
+LOG = b"".join(
+    event(number, "TERRA_" + name.upper().removesuffix("_MARK"),
+          (GOLDEN / (name + "_t.bin")).read_bytes())
+    for number, name in enumerate(TYPES))
+save("logs", "one_of_each", LOG)
+save("logs", "torn", LOG[:-40])
+save("logs", "damaged", LOG[:300] + b"\0\1\2" + LOG[310:])

@@ -179,10 +179,8 @@ void AdvisorNode::Publish(const AdviceWorker::Done& done, bus::Time now) {
   ++answers_;
   work_ = Work::kAnswered;
   answer_time_.Add(Seconds(now - began_));
-  if (done.answer.kind == AnswerKind::kFailed) {
-    ++failures_;
-    last_error_ = done.answer.error;
-  }
+  if (done.answer.kind == AnswerKind::kFailed) ++failures_;
+  if (!done.answer.error.empty()) last_error_ = done.answer.error;
   current_.clear();
   const std::size_t num_messages =
       std::max<std::size_t>(1, done.answer.candidates.size());

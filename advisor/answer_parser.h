@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "advisor/answer_kind.h"
-#include "terrain/cell.h"
+#include "advisor/coordinate_list.h"
 
 namespace terra::advisor {
 
@@ -21,32 +21,6 @@ struct AnswerRules {
   int max_candidates = 1;  ///< Lists read, in order; the rest is ignored.
   std::size_t max_bytes = 65'536;
   std::size_t max_waypoints = 2'048;  ///< Per list.
-};
-
-/// Why an answer, or one list of it, could not be read.
-enum class AnswerFault {
-  kNone,
-  kEmpty,           ///< Nothing but white space.
-  kTooLong,         ///< More bytes than allowed.
-  kYesNotAlone,     ///< A Yes with words or a list beside it.
-  kNoList,          ///< No Yes, and no coordinate list.
-  kEmptyList,       ///< `[]`.
-  kNotAnInteger,    ///< A coordinate with a fraction, exponent, sign +, letter.
-  kNumberTooLong,   ///< More than 9 digits.
-  kNotAPair,        ///< A point without two coordinates.
-  kUnexpectedText,  ///< Something else inside the list, an ellipsis say.
-  kUnclosedList,    ///< The answer ends inside the list.
-  kTooManyWaypoints,
-};
-
-/// Returns "not_an_integer", ... as printed and documented.
-std::string_view FaultName(AnswerFault fault);
-
-/// One list of an answer.
-struct AnswerCandidate {
-  Route waypoints;  ///< As written, unchecked against any map.
-  AnswerFault fault = AnswerFault::kNone;  ///< Then waypoints is empty.
-  std::size_t position = 0;  ///< Byte of the answer where the fault is.
 };
 
 /// What an answer says: a canonical Yes (kRetain), at least the first list

@@ -1,6 +1,7 @@
 #include "advisor/http_transport.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cctype>
 #include <new>
 
@@ -14,20 +15,12 @@ namespace {
 constexpr std::size_t kMaxHeaderBytes = 65'536;
 constexpr int kPollMs = 1'000;
 
-struct CloseEasy {
-  void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
-};
-struct CloseMulti {
-  void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
-};
 struct CloseUrl {
   void operator()(CURLU* url) const { curl_url_cleanup(url); }
 };
 struct FreeList {
   void operator()(curl_slist* list) const { curl_slist_free_all(list); }
 };
-using Easy = std::unique_ptr<CURL, CloseEasy>;
-using Multi = std::unique_ptr<CURLM, CloseMulti>;
 using List = std::unique_ptr<curl_slist, FreeList>;
 
 void InitialiseLibrary() {
@@ -132,8 +125,9 @@ List HeadersOf(const HttpRequest& request) {
 
 void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
                Sink& sink) {
+  // Rounded up: a call that ends with its time is never seen to end before it.
   const auto milliseconds = [](double seconds) {
-    return static_cast<long>(std::max(1.0, seconds * 1000));
+    return static_cast<long>(std::ceil(std::max(1.0, seconds * 1000)));
   };
   curl_easy_setopt(easy, CURLOPT_URL, request.url.c_str());
   curl_easy_setopt(easy, CURLOPT_PROTOCOLS_STR, "http,https");
@@ -163,14 +157,20 @@ void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
 }  // namespace
 
 struct HttpTransport::State {
-  Multi multi;
-  Easy easy;
+  struct CloseEasy {
+    void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
+  };
+  struct CloseMulti {
+    void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
+  };
+
+  std::unique_ptr<CURLM, CloseMulti> multi{curl_multi_init()};
+  std::unique_ptr<CURL, CloseEasy> easy{curl_easy_init()};
 };
 
 HttpTransport::HttpTransport() {
   InitialiseLibrary();
-  state_ = std::make_unique<State>(
-      State{Multi(curl_multi_init()), Easy(curl_easy_init())});
+  state_ = std::make_unique<State>();
   if (state_->multi == nullptr || state_->easy == nullptr) {
     throw std::bad_alloc();
   }
@@ -229,7 +229,9 @@ Result<std::string> CheckBaseUrl(const std::string& url) {
   if (parsed == nullptr ||
       curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
     return Error{ErrorCode::kInvalid,
-                 "'" + url + "' is no address; write https://HOST[:PORT]"};
+                 "'" + url +
+                     "' is no address; write https://HOST[:PORT], or "
+                     "http://127.0.0.1:PORT for a server on this machine"};
   }
   const std::string scheme = UrlPart(parsed.get(), CURLUPART_SCHEME);
   const bool loopback = IsLoopback(UrlPart(parsed.get(), CURLUPART_HOST));

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -59,7 +60,8 @@ Result<std::shared_ptr<const ReferencePool>> LoadReferences(
                                                 &ReferencePool::Builtin());
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) {
+  std::error_code failed;
+  if (!file || std::filesystem::is_directory(path, failed)) {
     return Error{ErrorCode::kNotFound, path + ": no such reference pool"};
   }
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -140,9 +142,9 @@ void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
   answer.tokens_out = reply.usage.tokens_out;
   answer.spend_usd = reply.spend_usd.value_or(0);
   answer.t_llm_us = Microseconds(reply.t_llm_s);
-  if (!outcome.cause.empty()) {
-    answer.error = Reason(outcome.cause, outcome.detail);
-  }
+  answer.error = outcome.cause.empty()
+                     ? reply.error  // Such as: it could not be recorded.
+                     : Reason(outcome.cause, outcome.detail);
   for (const OutcomeCandidate& candidate : outcome.candidates) {
     if (!candidate.fault.empty()) {
       answer.error = Reason(answer.error, candidate.fault);

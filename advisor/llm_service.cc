@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "advisor/exchange_client.h"
-#include "advisor/recording.h"
+#include "advisor/recording_clients.h"
 
 namespace terra::advisor {
 namespace {

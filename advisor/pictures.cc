@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <string>
-#include <string_view>
 
-#include <opencv2/imgcodecs.hpp>
-
-#include "advisor/fingerprint.h"
+#include "advisor/canvas.h"
 #include "advisor/pixel_font.h"
 #include "terrain/require.h"
 #include "terrain/segment.h"
@@ -16,75 +14,10 @@
 namespace terra::advisor {
 namespace {
 
-constexpr Color kBlack = {0, 0, 0};
-constexpr Color kWhite = {255, 255, 255};
 constexpr int kTickMarginLeft = 32;
 constexpr int kTickMarginTop = 14;
 constexpr int kPairGap = 8;
 constexpr int kMarkerRadius = 6;
-
-Picture Blank(int width, int height) {
-  Picture picture{width, height, {}};
-  picture.rgb.assign(
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3,
-      255);
-  return picture;
-}
-
-/// Draws on a picture; whatever lies outside is left out.
-class Canvas {
- public:
-  explicit Canvas(Picture& picture) : picture_(picture) {}
-
-  int width() const { return picture_.width; }
-  int height() const { return picture_.height; }
-
-  std::uint8_t* At(int x, int y) {
-    if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height) {
-      return nullptr;
-    }
-    return picture_.rgb.data() +
-           3 * (static_cast<std::size_t>(y) *
-                    static_cast<std::size_t>(picture_.width) +
-                static_cast<std::size_t>(x));
-  }
-  void Set(int x, int y, Color color) {
-    if (std::uint8_t* pixel = At(x, y)) {
-      pixel[0] = color.r;
-      pixel[1] = color.g;
-      pixel[2] = color.b;
-    }
-  }
-  void Fill(int x, int y, int width, int height, Color color) {
-    for (int row = y; row < y + height; ++row) {
-      for (int column = x; column < x + width; ++column) {
-        Set(column, row, color);
-      }
-    }
-  }
-  /// Moves a pixel a quarter of the way to mid-grey: seen on every terrain.
-  void Fade(int x, int y) {
-    if (std::uint8_t* pixel = At(x, y)) {
-      for (int i = 0; i < 3; ++i) {
-        pixel[i] = static_cast<std::uint8_t>((3 * pixel[i] + 128) / 4);
-      }
-    }
-  }
-  void Text(int x, int y, std::string_view text) {
-    for (const char c : text) {
-      const Glyph& glyph = GlyphOf(c);
-      for (int row = 0; row < kGlyphHeight; ++row) {
-        for (int column = 0; column < kGlyphWidth; ++column) {
-          if (GlyphHas(glyph, column, row)) Set(x + column, y + row, kBlack);
-        }
-      }
-      x += kGlyphWidth + 1;
-    }
-  }
-
- private:
-  Picture& picture_;
-};
 
 /// The colour of each terrain, and what a cell looks like that is blocked by
 /// the clearance rule though its terrain is not.
@@ -175,13 +108,15 @@ void DrawAxes(Canvas& canvas, const TerrainMap& map,
     const int at = PixelOf(frame, {x, 0}).x;
     for (int y = frame.top_px; y < canvas.height(); ++y) canvas.Fade(at, y);
     canvas.Fill(at, frame.top_px - 4, 1, 4, kBlack);
-    canvas.Text(at, 1, std::to_string(x));
+    const std::string number = std::to_string(x);
+    const int width = static_cast<int>(number.size()) * (kGlyphWidth + 1) - 1;
+    canvas.Text(at - width / 2, 1, number);
   }
   for (int y = 0; y < map.height(); y += frame.grid_cells) {
     const int at = PixelOf(frame, {0, y}).y;
     for (int x = frame.left_px; x < canvas.width(); ++x) canvas.Fade(x, at);
     canvas.Fill(frame.left_px - 4, at, 4, 1, kBlack);
-    canvas.Text(2, at, std::to_string(y));
+    canvas.Text(2, at - kGlyphHeight / 2, std::to_string(y));
   }
 }
 
@@ -215,8 +150,8 @@ void DrawMarker(Canvas& canvas, const PictureFrame& frame, Cell cell,
                         : std::max(std::abs(dx), std::abs(dy)) *
                               std::max(std::abs(dx), std::abs(dy));
       if (d <= 23 || d >= 65) continue;
-      canvas.Set(centre.x + dx, centre.y + dy,
-                 d >= 30 && d <= 50 ? kBlack : kWhite);
+      canvas.Fill(centre.x + dx, centre.y + dy, 1, 1,
+                  d >= 30 && d <= 50 ? kBlack : kWhite);
     }
   }
   canvas.Fill(at.x, at.y, frame.pixels_per_cell, frame.pixels_per_cell, kBlack);
@@ -267,10 +202,10 @@ Picture DrawMap(const TerrainMap& map, const PictureFrame& frame, Cell start,
                 Cell goal, const Route* route) {
   TERRA_REQUIRE(map.Contains(start) && map.Contains(goal));
   Picture picture =
-      Blank(frame.left_px + Reduced(map.width(), frame.cells_per_pixel) *
-                                frame.pixels_per_cell,
-            frame.top_px + Reduced(map.height(), frame.cells_per_pixel) *
-                               frame.pixels_per_cell);
+      BlankPicture(frame.left_px + Reduced(map.width(), frame.cells_per_pixel) *
+                                       frame.pixels_per_cell,
+                   frame.top_px + Reduced(map.height(), frame.cells_per_pixel) *
+                                      frame.pixels_per_cell);
   Canvas canvas(picture);
   DrawTerrain(canvas, map, frame);
   DrawAxes(canvas, map, frame);
@@ -292,7 +227,7 @@ Picture DrawReferencePair(const TerrainMap& map, const Route& left,
   }
   const int width = Reduced(map.width(), frame.cells_per_pixel);
   const int height = Reduced(map.height(), frame.cells_per_pixel);
-  Picture pair = Blank(2 * width + kPairGap, height);
+  Picture pair = BlankPicture(2 * width + kPairGap, height);
   Canvas canvas(pair);
   canvas.Fill(width, 0, kPairGap, height, {128, 128, 128});
   int x = 0;
@@ -307,65 +242,6 @@ Picture DrawReferencePair(const TerrainMap& map, const Route& left,
     x = width + kPairGap;
   }
   return pair;
-}
-
-EncodedPicture EncodePicture(const Picture& picture) {
-  cv::Mat bgr(picture.height, picture.width, CV_8UC3);
-  const std::uint8_t* rgb = picture.rgb.data();
-  std::uint8_t* out = bgr.data;
-  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
-    out[i] = rgb[i + 2];
-    out[i + 1] = rgb[i + 1];
-    out[i + 2] = rgb[i];
-  }
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", bgr, png);
-  return {std::string(png.begin(), png.end()), picture.width, picture.height,
-          PixelHash(picture)};
-}
-
-Result<Picture> DecodePicture(std::string_view png) {
-  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-  constexpr std::size_t kHeaderBytes = 24;  // Up to the size in IHDR.
-  const auto side = [png](std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) {
-      value = (value << 8) | static_cast<std::uint8_t>(png[i]);
-    }
-    return value;
-  };
-  if (png.size() < kHeaderBytes || !png.starts_with(kSignature)) {
-    return Error{ErrorCode::kInvalid, "picture: no PNG"};
-  }
-  if (side(16) > 2u * kMaxPictureSide || side(20) > 2u * kMaxPictureSide) {
-    return Error{ErrorCode::kUnsupported, "picture: too large"};
-  }
-  // imdecode takes no const pointer, and only reads.
-  const cv::Mat bytes(1, static_cast<int>(png.size()), CV_8UC1,
-                      const_cast<char*>(png.data()));
-  const cv::Mat bgr = cv::imdecode(bytes, cv::IMREAD_COLOR);
-  if (bgr.empty()) {
-    return Error{ErrorCode::kInvalid, "picture: a damaged PNG"};
-  }
-  Picture picture = Blank(bgr.cols, bgr.rows);
-  std::uint8_t* out = picture.rgb.data();
-  for (int y = 0; y < bgr.rows; ++y) {
-    const std::uint8_t* row = bgr.ptr(y);
-    for (int x = 0; x < bgr.cols; ++x, row += 3, out += 3) {
-      out[0] = row[2];
-      out[1] = row[1];
-      out[2] = row[0];
-    }
-  }
-  return picture;
-}
-
-std::string PixelHash(const Picture& picture) {
-  Fingerprint hash;
-  hash.Add(picture.width);
-  hash.Add(picture.height);
-  hash.AddBytes(picture.rgb.data(), picture.rgb.size());
-  return hash.Hex();
 }
 
 }  // namespace terra::advisor

@@ -17,6 +17,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Sent where a server on this machine wants the header, not a secret.
+constexpr std::string_view kNoKey = "none";
+
 double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
@@ -50,6 +53,26 @@ std::string WithoutVersion(std::string url, const std::string& path) {
   const std::string version = path.substr(0, path.find('/', 1));
   if (url.ends_with(version)) url.resize(url.size() - version.size());
   return url;
+}
+
+/// What the person who started this can do about it; often nothing.
+std::string Remedy(const TryOutcome& outcome, const std::string& url,
+                   const std::string& model, const std::string& key_advice) {
+  if (outcome.fault == TransportFault::kConnect) {
+    return " (" + url + "): does the server run, and is the address right?";
+  }
+  if (outcome.fault != TransportFault::kNone) return "";
+  switch (outcome.http_status) {
+    case 401:
+    case 403:
+      return "; " + key_advice;
+    case 404:
+      return "; check --base-url (" + url + ") and --model (" + model + ")";
+    default:
+      return outcome.http_status < 300
+                 ? "; does " + url + " speak this backend's form?"
+                 : "";
+  }
 }
 
 double Jitter() {
@@ -88,7 +111,7 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
     return Error{ErrorCode::kNotFound,
                  "no key: set the environment variable " + variable};
   } else if (!format->key_optional()) {
-    key = "none";  // A test server wants the header, not a secret.
+    key = kNoKey;
   }
   std::string endpoint_class = *endpoint;
   if (*endpoint != "loopback") {
@@ -136,10 +159,15 @@ LlmReply ProviderClient::Ask(const LlmRequest& request, std::stop_token stop) {
     const RetryDecision decision = DecideRetry(
         outcome, reply.tries - 1, Jitter(), std::time(nullptr), options_.retry);
     const bool late = reply.t_llm_s + decision.wait_s >= options_.deadline_s;
-    if (late && (decision.retry || outcome.fault == TransportFault::kTimeout)) {
-      reply.reason = NoAnswer::kDeadline;
-    }
     if (late || !decision.retry) {
+      const bool timed_out = outcome.fault == TransportFault::kTimeout;
+      if (late && (decision.retry || timed_out)) {
+        reply.reason = NoAnswer::kDeadline;
+      }
+      reply.error += Remedy(outcome, http.url, identity_.model, KeyAdvice());
+      if (reply.tries > 1) {
+        reply.error += " (asked " + std::to_string(reply.tries) + " times)";
+      }
       return reply;
     }
     if (!WaitUnlessStopped(decision.wait_s, stop)) {
@@ -181,6 +209,13 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
     reply.reason = NoAnswer::kNone;
   }
   return outcome;
+}
+
+std::string ProviderClient::KeyAdvice() const {
+  const std::string variable(format_->key_variable());
+  return key_.empty() || key_ == kNoKey
+             ? "no key was sent: set the environment variable " + variable
+             : "check the key in the environment variable " + variable;
 }
 
 /// Some servers repeat the key in their texts.

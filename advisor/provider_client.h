@@ -43,6 +43,7 @@ class ProviderClient : public LlmClient {
   /// One request: what it brought goes into `reply`, the rest is returned.
   TryOutcome Try(const HttpRequest& request, LlmReply& reply,
                  std::stop_token stop);
+  std::string KeyAdvice() const;
   std::string WithoutKey(std::string text) const;
   std::string BodyWithoutKey(std::string body) const;
 

@@ -61,25 +61,6 @@ std::string Dumped(const json& line) {
   return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-/// Calls `take` with each call of a recording and where it stands.
-/// Errors: those of a line, with file and number, and those of `take`.
-Status ForEachCall(
-    std::istream& file, const std::string& path,
-    const std::function<Status(RecordedCall, const std::string&)>& take) {
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::string at = path + ":" + std::to_string(number) + ": ";
-    auto call = ParseRecord(line);
-    if (!call) {
-      if (file.eof()) break;  // Killed while it was writing.
-      return Error{call.error().code, at + call.error().message};
-    }
-    const Status taken = take(*std::move(call), at);
-    if (!taken) return taken;
-  }
-  return Done{};
-}
-
 }  // namespace
 
 std::string UtcNow() {
@@ -207,107 +188,38 @@ Result<RecordedCall> ParseRecord(std::string_view text) {
   }
 }
 
-Result<std::unique_ptr<LlmClient>> RecordingClient::Create(
-    std::unique_ptr<LlmClient> inner, const std::string& path, bool images) {
-  std::string image_folder;
+Status ForEachRecordedCall(const std::string& path, const TakeCall& take) {
+  std::ifstream file(path, std::ios::binary);
   std::error_code failed;
-  if (images) {
-    image_folder = path + ".images";
-    std::filesystem::create_directories(image_folder, failed);
+  if (!file || std::filesystem::is_directory(path, failed)) {
+    return Error{ErrorCode::kNotFound, path + ": no such recording"};
   }
-  auto file = OpenRecording(path);
-  if (failed || !file) {
-    return Error{ErrorCode::kUnavailable,
-                 path + ": the recording cannot be written"};
-  }
-  return std::unique_ptr<LlmClient>(std::make_unique<RecordingClient>(
-      std::move(inner), *std::move(file), std::move(image_folder)));
-}
-
-RecordingClient::RecordingClient(std::unique_ptr<LlmClient> inner,
-                                 std::ofstream file, std::string image_folder)
-    : inner_(std::move(inner)),
-      file_(std::move(file)),
-      image_folder_(std::move(image_folder)) {}
-
-LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
-  LlmReply reply = inner_->Ask(request, stop);
-  if (reply.came()) {
-    if (!image_folder_.empty()) KeepImages(request, image_folder_);
-    file_ << FormatRecord(identity(), request, reply, UtcNow()) << std::flush;
-    if (!file_) {
-      // The answer is still good; that it was not kept must not stay unseen.
-      reply.error += reply.error.empty() ? "" : "; ";
-      reply.error += "the recording could not be written";
-      file_.clear();
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::string at = path + ":" + std::to_string(number) + ": ";
+    auto call = ParseRecord(line);
+    if (!call) {
+      if (file.eof()) break;  // Killed while it was writing.
+      return Error{call.error().code, at + call.error().message};
     }
+    const Status taken = take(*std::move(call), at);
+    if (!taken) return taken;
   }
-  return reply;
+  return Done{};
 }
 
 Result<std::unordered_set<std::string>> ReadRecordKeys(
     const std::string& path) {
   std::unordered_set<std::string> keys;
-  std::ifstream file(path, std::ios::binary);
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) return keys;
   const Status read =
-      ForEachCall(file, path, [&keys](RecordedCall call, const std::string&) {
+      ForEachRecordedCall(path, [&keys](RecordedCall call, const std::string&) {
         keys.insert(RecordKey(call.request_hash, call.repeat));
         return Status(Done{});
       });
   if (!read) return read.error();
   return keys;
-}
-
-Result<std::unique_ptr<LlmClient>> ReplayClient::Create(
-    const std::string& path, const std::string& model) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    return Error{ErrorCode::kNotFound, path + ": no such recording"};
-  }
-  std::optional<LlmIdentity> identity;
-  std::unordered_map<std::string, LlmReply> replies;
-  const Status read =
-      ForEachCall(file, path, [&](RecordedCall call, const std::string& at) {
-        if (!model.empty() && call.identity.model != model) {
-          return Status(Done{});
-        }
-        if (!identity) identity = call.identity;
-        if (identity->model != call.identity.model ||
-            identity->settings != call.identity.settings) {
-          return Status(Error{
-              ErrorCode::kInvalid,
-              at + "another model or other settings than before; choose one "
-                   "with --model, or split the file"});
-        }
-        replies[RecordKey(call.request_hash, call.repeat)] =
-            std::move(call.reply);
-        return Status(Done{});
-      });
-  if (!read) return read.error();
-  if (!identity) {
-    return Error{
-        ErrorCode::kNotFound,
-        path + ": no recorded call" + (model.empty() ? "" : " of ") + model};
-  }
-  return std::unique_ptr<LlmClient>(
-      std::make_unique<ReplayClient>(*std::move(identity), std::move(replies)));
-}
-
-ReplayClient::ReplayClient(LlmIdentity identity,
-                           std::unordered_map<std::string, LlmReply> replies)
-    : identity_(std::move(identity)), replies_(std::move(replies)) {}
-
-LlmReply ReplayClient::Ask(const LlmRequest& request, std::stop_token) {
-  const std::string hash = RequestHash(identity_, request);
-  const auto at = replies_.find(RecordKey(hash, request.repeat));
-  if (at != replies_.end()) {
-    return at->second;
-  }
-  LlmReply none;
-  none.reason = NoAnswer::kNotRecorded;
-  none.error = "the recording has no request " + hash + ", repeat " +
-               std::to_string(request.repeat);
-  return none;
 }
 
 }  // namespace terra::advisor

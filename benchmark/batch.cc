@@ -177,7 +177,7 @@ struct Results {
   std::int64_t doubled = 0;
 };
 
-Status ReadResults(const WireFormat& format, const std::string& path,
+Status ReadBatchResults(const WireFormat& format, const std::string& path,
                    Results& results) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorCode::kNotFound, path + ": no such file"};
@@ -303,7 +303,7 @@ Result<ImportedBatch> ImportBatch(const std::string& folder,
   }
   Results results;
   for (const std::string& path : result_files) {
-    const Status read = ReadResults(*format, path, results);
+    const Status read = ReadBatchResults(*format, path, results);
     if (!read) return read.error();
   }
   const auto known = advisor::ReadRecordKeys(recording);

@@ -8,7 +8,7 @@ namespace terra::benchmark {
 namespace {
 
 constexpr std::uint8_t kWall = 11;
-constexpr IntRange kTerrains{0, 10};
+constexpr IntRange kCostTerrains{0, 10};
 
 }  // namespace
 
@@ -65,7 +65,7 @@ WorstCase NoiseOfCosts(int side, std::uint64_t seed) {
   WorstCase c{ByteRaster(side, side), {0, 0}, {side - 1, side - 1}};
   IntegerRandom random(seed);
   for (Eigen::Index i = 0; i < c.ids.size(); ++i) {
-    c.ids.data()[i] = static_cast<std::uint8_t>(random.In(kTerrains));
+    c.ids.data()[i] = static_cast<std::uint8_t>(random.In(kCostTerrains));
   }
   return c;
 }

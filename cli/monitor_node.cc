@@ -16,7 +16,7 @@ using terra_msg::verdict_t;
 // Names come from the bus: a flood of made-up ones must not fill the memory or
 // the screen.
 constexpr std::size_t kMaxProcesses = 64;
-constexpr std::size_t kMaxVerdicts = 8;
+constexpr std::size_t kShownVerdicts = 8;
 // Three heartbeats missed: gone or stuck.
 constexpr bus::Duration kSilent = std::chrono::seconds(3);
 // A process that has been silent so long is no longer listed.
@@ -84,7 +84,7 @@ void MonitorNode::OnStatus(const status_t& message, bus::Time now) {
 
 void MonitorNode::OnVerdict(const verdict_t& message) {
   verdicts_.push_front(message);
-  if (verdicts_.size() > kMaxVerdicts) verdicts_.pop_back();
+  if (verdicts_.size() > kShownVerdicts) verdicts_.pop_back();
 }
 
 bus::Time MonitorNode::Advance(bus::Time now) {

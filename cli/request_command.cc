@@ -170,7 +170,7 @@ Status Draw(const RequestNode& node, const RequestArguments& arguments) {
   return WritePicture(node.map().map()->map, picture, arguments.picture);
 }
 
-int Fail(const std::string& message) {
+int FailRequest(const std::string& message) {
   std::cerr << "terra request: " << message << "\n";
   return 1;
 }
@@ -198,7 +198,7 @@ std::string Explain(const RequestNode& node) {
 
 int Ask(RequestArguments& arguments) {
   const Status completed = arguments.bus.Complete();
-  if (!completed) return Fail(completed.error().message);
+  if (!completed) return FailRequest(completed.error().message);
   RequestPlan plan;
   plan.request_id = bus::RandomId();
   plan.start = arguments.start;
@@ -210,30 +210,30 @@ int Ask(RequestArguments& arguments) {
   if (!arguments.map.path.empty()) {
     const Result<MapFile> map =
         ReadMap(arguments.map.path, arguments.map.options);
-    if (!map) return Fail(map.error().message);
+    if (!map) return FailRequest(map.error().message);
     plan.map_id = MapId(map->map);
   }
   const bus::StopSignal stop;
   const Result<bus::ChannelNames> channels = arguments.bus.Channels();
-  if (!channels) return Fail(channels.error().message);
+  if (!channels) return FailRequest(channels.error().message);
   bus::Inbox inbox;
   Result<std::unique_ptr<bus::Bus>> opened =
       bus::Bus::Open(arguments.bus.lcm_url, *channels);
-  if (!opened) return Fail(opened.error().message);
+  if (!opened) return FailRequest(opened.error().message);
   const std::unique_ptr<bus::Bus> bus = *std::move(opened);
   bus::Outbox out(*bus, bus::RandomId());
   RequestNode node(plan, out);
   const Status listening = bus->Listen(node.channels(), inbox);
-  if (!listening) return Fail(listening.error().message);
+  if (!listening) return FailRequest(listening.error().message);
   bus::EventLoop loop(inbox, stop);
   loop.Run(node);
 
   if (arguments.json) std::cout << ToJson(node).dump() << "\n";
-  if (!HasRoute(node)) return Fail(Explain(node));
+  if (!HasRoute(node)) return FailRequest(Explain(node));
   if (!arguments.json) PrintText(node);
   if (!arguments.picture.empty()) {
     const Status drawn = Draw(node, arguments);
-    if (!drawn) return Fail(drawn.error().message);
+    if (!drawn) return FailRequest(drawn.error().message);
   }
   return 0;
 }

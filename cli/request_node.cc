@@ -10,7 +10,7 @@ using terra_msg::deployed_t;
 
 // A picture wants the map; no set takes longer to send one.
 constexpr bus::Duration kMapPatience = std::chrono::seconds(20);
-constexpr std::size_t kMaxVerdicts = 1'000;
+constexpr std::size_t kMaxKeptVerdicts = 1'000;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ void RequestNode::OnDeployed(const deployed_t& message, bus::Time now) {
 
 void RequestNode::OnVerdict(const terra_msg::verdict_t& message) {
   if (message.request_id == plan_.request_id &&
-      verdicts_.size() < kMaxVerdicts) {
+      verdicts_.size() < kMaxKeptVerdicts) {
     verdicts_.push_back(message);
   }
 }

@@ -60,7 +60,9 @@ function(terra_test folder)
   endif()
   string(REPLACE "/" "." prefix "${folder}.")
   add_executable(${ARG_NAME} ${ARG_SRCS})
-  set_target_properties(${ARG_NAME} PROPERTIES
+  # Test files keep their helpers in unnamed namespaces under the same names, so
+  # each is compiled alone even where the libraries are unity builds.
+  set_target_properties(${ARG_NAME} PROPERTIES UNITY_BUILD OFF
     RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPS} terra_flags
                         GTest::gmock GTest::gtest GTest::gtest_main)

@@ -27,10 +27,43 @@ void Audit::Add(Finding finding) {
   if (findings.size() < kMaxFindings) findings.push_back(std::move(finding));
 }
 
-Audit AuditDecisions(LogContents& contents) {
+namespace {
+
+void AddDamage(const LogReader& reader, const SealChecker& seals,
+               Audit& audit) {
+  const auto add = [&audit](std::string what) {
+    audit.Add({Finding::Kind::kDamage, 0, 0, std::move(what)});
+  };
+  for (const LogDamage& damage : reader.damage()) {
+    add(std::to_string(damage.bytes) + " bytes at byte " +
+        std::to_string(damage.offset) + " are no events");
+  }
+  if (!reader.read_error().empty()) add("read error: " + reader.read_error());
+  if (!seals.sealed()) return;  // Another logger's.
+  for (const SealChecker::Broken& broken : seals.broken()) {
+    add("bytes " + std::to_string(broken.offset) + " to " +
+        std::to_string(broken.offset + broken.bytes) + ": " + broken.reason);
+  }
+  if (seals.unsealed_bytes() > 0) {
+    add("the last " + std::to_string(seals.unsealed_bytes()) +
+        " bytes have no seal: written half, or changed");
+  }
+}
+
+}  // namespace
+
+Audit AuditContents(LogContents& contents, const LogReader& reader,
+                    const SealChecker& seals) {
   Audit audit;
+  AddDamage(reader, seals, audit);
+  // Under good seals the log is what was heard.
+  const bool as_heard = seals.sealed() && audit.clean();
   for (const Conflict& conflict : contents.conflicts) {
-    audit.Add({Finding::Kind::kConflict, 0, 0, conflict.what});
+    if (conflict.of_gate || !as_heard) {
+      audit.Add({Finding::Kind::kConflict, 0, 0, conflict.what});
+    } else if (audit.notes.size() < Audit::kMaxFindings) {
+      audit.notes.push_back(conflict.what);
+    }
   }
   for (const auto& [session, decisions] : contents.decisions) {
     ++audit.sessions;
@@ -39,28 +72,10 @@ Audit AuditDecisions(LogContents& contents) {
   return audit;
 }
 
-void AddDamage(const LogReader& reader, const SealChecker& seals,
-               Audit& audit) {
-  for (const LogDamage& damage : reader.damage()) {
-    audit.Add({Finding::Kind::kDamage, 0, 0,
-               std::to_string(damage.bytes) + " bytes at byte " +
-                   std::to_string(damage.offset) + " are no events"});
-  }
-  if (!seals.sealed()) return;  // Another logger's.
-  for (const SealChecker::Broken& broken : seals.broken()) {
-    audit.Add({Finding::Kind::kDamage, 0, 0,
-               "bytes " + std::to_string(broken.offset) + " to " +
-                   std::to_string(broken.offset + broken.bytes) + ": " +
-                   broken.reason});
-  }
-}
-
 Audit AuditLog(LogReader& reader) {
   SealChecker seals;
   LogContents contents = LogContents::Load(reader, seals);
-  Audit audit = AuditDecisions(contents);
-  AddDamage(reader, seals, audit);
-  return audit;
+  return AuditContents(contents, reader, seals);
 }
 
 }  // namespace terra::logger

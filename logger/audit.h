@@ -34,9 +34,13 @@ struct Audit {
   std::int64_t verdicts = 0;  ///< Made again, and the same.
   std::int64_t deployed = 0;  ///< Made again, and the same.
   std::int64_t anchors = 0;   ///< Deployments taken as the state to go on from:
-                              ///< route and costs checked, cause not known.
+                              ///< route and costs made again, cause not known.
+  std::int64_t unchecked = 0;     ///< Verdicts from before the first DEPLOYED.
   std::vector<Finding> findings;  ///< The first kMaxFindings.
   std::int64_t num_findings = 0;
+  /// What other processes than the gate did wrong, if the log's seals show that
+  /// it was they. The first kMaxFindings.
+  std::vector<std::string> notes;
 
   bool clean() const { return num_findings == 0; }
   void Add(Finding finding);
@@ -44,18 +48,16 @@ struct Audit {
 
 /// Makes every verdict and deployment of a log again, through the gate, from
 /// the inputs that each names (docs/gate.md, invariant 6), and compares byte
-/// for byte except utime, session, seq and T_det.
+/// for byte except utime, session, seq and T_det; checks the log's seals.
 ///
 /// The order in which the log has them does not matter, since it is not the
 /// order in which the gate heard them: decisions are taken by their number, and
 /// each says what it was made from. Where the log begins in mid-session, or
 /// lacks decisions, the next DEPLOYED is the state to go on from.
-Audit AuditDecisions(LogContents& contents);
-
-/// Adds what is wrong with the bytes of a log that was read to its end.
-void AddDamage(const LogReader& reader, const SealChecker& seals, Audit& audit);
-
-/// Reads a log and audits it, its seals included.
 Audit AuditLog(LogReader& reader);
+
+/// The same for a log that was read to its end.
+Audit AuditContents(LogContents& contents, const LogReader& reader,
+                    const SealChecker& seals);
 
 }  // namespace terra::logger

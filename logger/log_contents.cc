@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
+#include "bus/codec.h"
 #include "logger/log_channels.h"
 #include "terrain/digest.h"
-#include "terrain/map_tiles.h"
+#include "verifier/verify.h"
 
 namespace terra::logger {
 namespace {
@@ -19,55 +21,16 @@ std::vector<std::uint8_t> WithoutEnvelope(T message) {
   return bus::Encode(message);
 }
 
+std::string At(const char* what, std::int64_t index) {
+  return std::string(what) + " at event " + std::to_string(index);
+}
+
+std::string Differs(const char* what, std::int64_t index, std::int64_t first) {
+  return At(what, index) + " differs from event " + std::to_string(first) +
+         " of the same name";
+}
+
 }  // namespace
-
-// ---- Maps ----
-
-void LoggedMaps::Take(const terra_msg::map_header_t& header) {
-  if (outlines_.contains(header.map_id)) return;
-  Result<bus::MapOutline> outline = bus::ReadMapHeader(header);
-  if (!outline) return;
-  ids_.push_back(header.map_id);
-  outlines_.emplace(header.map_id, *std::move(outline));
-}
-
-void LoggedMaps::Take(const terra_msg::map_tile_t& tiles) {
-  std::span<const std::uint8_t> data(tiles.tile_data);
-  for (std::size_t i = 0; i < tiles.tile_index.size(); ++i) {
-    const std::int32_t size = tiles.tile_size[i];
-    if (size < 0 || static_cast<std::size_t>(size) > data.size()) return;
-    const auto frame = data.first(static_cast<std::size_t>(size));
-    data = data.subspan(frame.size());
-    frames_.try_emplace({tiles.tile_index[i], tiles.tile_digest[i]},
-                        frame.begin(), frame.end());
-  }
-}
-
-bus::MapPtr LoggedMaps::Find(std::int64_t map_id) {
-  const auto made = made_.find(map_id);
-  if (made != made_.end()) return made->second;
-  bus::MapPtr& map = made_[map_id];
-  const auto found = outlines_.find(map_id);
-  if (found == outlines_.end()) return map;
-  const bus::MapOutline& outline = found->second;
-  ByteRaster raster = ByteRaster::Zero(outline.grid.height, outline.grid.width);
-  for (int i = 0; i < outline.grid.count(); ++i) {
-    const std::int64_t digest =
-        outline.tile_digests[static_cast<std::size_t>(i)];
-    const auto frame = frames_.find({i, digest});
-    if (frame == frames_.end()) return map;
-    const auto ids =
-        bus::UnpackTile(frame->second, outline.grid.rect(i).cells());
-    if (!ids || TileDigest(*ids) != digest) return map;
-    InsertTile(raster, outline.grid, i, *ids);
-  }
-  auto terrain =
-      TerrainMap::Create(std::move(raster), outline.legend, outline.model);
-  if (!terrain) return map;
-  map = std::make_shared<const bus::MapInForce>(
-      bus::MapInForce{*std::move(terrain), map_id});
-  return map;
-}
 
 // ---- Messages ----
 
@@ -78,7 +41,13 @@ LogContents LogContents::Load(LogReader& reader, SealChecker& seals) {
     if (contents.events == 0) contents.first_us = contents.last_us = time_us;
     contents.first_us = std::min(contents.first_us, time_us);
     contents.last_us = std::max(contents.last_us, time_us);
-    if (!seals.Take(*item)) contents.Take(item->event, contents.events);
+    const auto mark = seals.Take(*item);
+    if (!mark) contents.Take(item->event, contents.events);
+    // One that was put in later would hide what is before it.
+    if (mark && mark->mark_kind == terra_msg::log_mark_t::KIND_SNAPSHOT_END &&
+        seals.num_broken() == 0 && seals.good() == 2) {
+      contents.state_end = contents.events;
+    }
     ++contents.events;
   }
   seals.Finish(reader.size());
@@ -125,9 +94,9 @@ void LogContents::TakeAs(const LogEvent& event, std::int64_t index) {
   ++malformed;
   const auto channel = bus::MessageTraits<T>::kChannel;
   if (channel == bus::Channel::kVerdict || channel == bus::Channel::kDeployed) {
-    conflicts.push_back({index, std::string(bus::BaseName(channel)) +
-                                    " at event " + std::to_string(index) +
-                                    " cannot be read"});
+    conflicts.push_back(
+        {index, At(bus::BaseName(channel).data(), index) + " cannot be read",
+         true});
   }
 }
 
@@ -137,16 +106,16 @@ void LogContents::Keep(std::map<Key, Logged<T>>& kept, const Key& key,
   const auto [place, is_new] = kept.try_emplace(
       key, Logged<T>{said.index, said.time_us, T{said.message}});
   if (!is_new && Essence(place->second.message) != Essence(said.message)) {
-    conflicts.push_back({said.index, std::string(what) + " at event " +
-                                         std::to_string(said.index) +
-                                         " differs from event " +
-                                         std::to_string(place->second.index) +
-                                         " of the same name"});
+    constexpr bool kOfGate = std::is_same_v<T, Decided>;
+    conflicts.push_back(
+        {said.index, Differs(what, said.index, place->second.index), kOfGate});
   }
 }
 
 void LogContents::Place(const Logged<terra_msg::map_header_t>& said) {
-  maps.Take(said.message);
+  if (maps.Take(said.message)) return;
+  conflicts.push_back(
+      {said.index, At("MAP_HEADER", said.index) + " is not what it says"});
 }
 
 void LogContents::Place(const Logged<terra_msg::map_tile_t>& said) {
@@ -164,26 +133,42 @@ void LogContents::Place(const Logged<terra_msg::plan_request_t>& said) {
 }
 
 void LogContents::Place(const Logged<terra_msg::baseline_t>& said) {
-  if (said.message.status == terra_msg::baseline_t::STATUS_OK) {
-    Keep(baselines, said.message.baseline_digest, said, "BASELINE");
+  const terra_msg::baseline_t& message = said.message;
+  if (message.status != terra_msg::baseline_t::STATUS_OK) {
+    if (other_baselines.empty() ||
+        Essence(other_baselines.back().message) != Essence(message)) {
+      other_baselines.push_back(said);
+    }
     return;
   }
-  if (other_baselines.empty() ||
-      Essence(other_baselines.back().message) != Essence(said.message)) {
-    other_baselines.push_back(said);
+  const BaselineName name = {message.baseline_digest, message.session};
+  const bool is_new = !baselines.contains(name);
+  Keep(baselines, name, said, "BASELINE");
+  if (is_new && BaselineDigest(message.request_id, message.map_id,
+                               bus::WaypointsOf(message)) != name.digest) {
+    conflicts.push_back(
+        {said.index, At("BASELINE", said.index) + " is not what it says"});
   }
 }
 
 void LogContents::Place(const Logged<terra_msg::advice_t>& said) {
   const terra_msg::advice_t& message = said.message;
-  const AdviceName name = {message.request_id,      message.map_id,
-                           message.baseline_digest, message.session,
-                           message.attempt,         message.candidate};
-  Keep(advice, name, said, "ADVICE");
+  auto& variants =
+      advice[{message.request_id, message.map_id, message.baseline_digest,
+              message.session, message.attempt, message.candidate}];
+  const auto essence = Essence(message);
+  for (const Logged<terra_msg::advice_t>& known : variants) {
+    if (Essence(known.message) == essence) return;
+  }
+  if (!variants.empty()) {
+    conflicts.push_back(
+        {said.index, Differs("ADVICE", said.index, variants.front().index)});
+  }
+  if (variants.size() < kMaxVariants) variants.push_back(said);
 }
 
 void LogContents::Place(const Logged<terra_msg::pose_t>& said) {
-  poses.push_back(said);
+  poses[said.message.deployed_session].push_back(said);
 }
 
 void LogContents::Place(const Logged<terra_msg::verdict_t>& said) {
@@ -191,16 +176,29 @@ void LogContents::Place(const Logged<terra_msg::verdict_t>& said) {
 }
 
 void LogContents::Place(const Logged<terra_msg::deployed_t>& said) {
+  first_deployed = std::min(first_deployed, said.index);
   Keep(decisions[said.message.session], said.message.decision, said,
        "DEPLOYED");
 }
 
 void LogContents::Place(const Logged<terra_msg::config_t>& said) {
-  configs.try_emplace(said.message.session, said.message);
+  Keep(configs, said.message.session, said, "CONFIG");
 }
 
 void LogContents::Place(const Logged<terra_msg::status_t>& said) {
   statuses.push_back(said);
+}
+
+const Logged<terra_msg::baseline_t>* LogContents::FindBaseline(
+    std::int64_t digest, std::int64_t session) const {
+  auto found = baselines.find({digest, session});
+  if (found == baselines.end()) {
+    found = baselines.lower_bound(
+        {digest, std::numeric_limits<std::int64_t>::min()});
+  }
+  return found != baselines.end() && found->first.digest == digest
+             ? &found->second
+             : nullptr;
 }
 
 // ---- What a message says ----
@@ -220,6 +218,10 @@ std::vector<std::uint8_t> Essence(terra_msg::plan_request_t message) {
   return WithoutEnvelope(std::move(message));
 }
 
+std::vector<std::uint8_t> Essence(terra_msg::config_t message) {
+  return WithoutEnvelope(std::move(message));
+}
+
 std::vector<std::uint8_t> Essence(terra_msg::deployed_t message) {
   return WithoutEnvelope(std::move(message));
 }
@@ -235,6 +237,21 @@ std::vector<std::uint8_t> Essence(const LogContents::Decided& message) {
         return Essence(one);
       },
       message);
+}
+
+std::string InWords(const LogContents::Decided& decided) {
+  if (const auto* verdict = std::get_if<terra_msg::verdict_t>(&decided)) {
+    return "VERDICT " +
+           std::string(verifier::CodeName(verifier::Code{verdict->code})) +
+           ", cost " + std::to_string(verdict->candidate_cost) + " against " +
+           std::to_string(verdict->cost_to_beat);
+  }
+  const auto& deployed = std::get<terra_msg::deployed_t>(decided);
+  return "DEPLOYED route " + std::to_string(deployed.route_seq) + " in mode " +
+         std::to_string(deployed.mode) + ", cause " +
+         std::to_string(deployed.cause) + ", cost " +
+         std::to_string(deployed.deployed_cost) + " against " +
+         std::to_string(deployed.baseline_cost);
 }
 
 }  // namespace terra::logger

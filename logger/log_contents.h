@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,10 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "bus/map_exchange.h"
 #include "bus/messages.h"
 #include "logger/log_reader.h"
 #include "logger/log_seal.h"
+#include "logger/logged_maps.h"
 
 namespace terra::logger {
 
@@ -35,33 +36,20 @@ struct AdviceName {
   friend auto operator<=>(const AdviceName&, const AdviceName&) = default;
 };
 
-/// The maps of a log: headers and, by their digests, the tiles.
-class LoggedMaps {
- public:
-  void Take(const terra_msg::map_header_t& header);
-  void Take(const terra_msg::map_tile_t& tiles);
+/// What names a baseline: two planners may find the same route.
+struct BaselineName {
+  std::int64_t digest = 0;
+  std::int64_t session = 0;
 
-  /// Returns a map whose every tile is in the log as its header lists it; null
-  /// when something is missing.
-  bus::MapPtr Find(std::int64_t map_id);
-
-  const std::vector<std::int64_t>& ids() const { return ids_; }
-
- private:
-  // (index, digest): the same digest may stand at places of other sizes.
-  using TileName = std::pair<std::int32_t, std::int64_t>;
-
-  std::map<std::int64_t, bus::MapOutline> outlines_;
-  std::vector<std::int64_t> ids_;  // In order of appearance.
-  std::map<TileName, std::vector<std::uint8_t>> frames_;
-  std::map<std::int64_t, bus::MapPtr> made_;
+  friend auto operator<=>(const BaselineName&, const BaselineName&) = default;
 };
 
-/// Two messages under one name that say different things, or a decision that
-/// cannot be read.
+/// Two messages under one name that say different things, a message that is not
+/// what its own digest says, or a decision that cannot be read.
 struct Conflict {
   std::int64_t index = 0;
   std::string what;
+  bool of_gate = false;  ///< Else another process may have said so.
 };
 
 /// What a log says, by name: repetitions are one thing said often.
@@ -75,20 +63,35 @@ class LogContents {
   /// Reads a log of one robot to its end.
   static LogContents Load(LogReader& reader, SealChecker& seals);
 
+  /// Returns the baseline of a planner's session; of any when that is 0 or is
+  /// not in the log. Null when there is none of this digest.
+  const Logged<terra_msg::baseline_t>* FindBaseline(std::int64_t digest,
+                                                    std::int64_t session) const;
+
+  /// Events before this one are the state from before the log: the snapshot
+  /// that a part begins with.
+  std::int64_t state_end = 0;
   LoggedMaps maps;
   /// By request_id; a cancelled request is in both.
   std::map<std::int64_t, Logged<terra_msg::plan_request_t>> requests;
   std::map<std::int64_t, Logged<terra_msg::plan_request_t>> cancels;
-  /// By digest, those that have a route, and the others in order.
-  std::map<std::int64_t, Logged<terra_msg::baseline_t>> baselines;
+  /// Those that have a route by name, and the others in order.
+  std::map<BaselineName, Logged<terra_msg::baseline_t>> baselines;
   std::vector<Logged<terra_msg::baseline_t>> other_baselines;
-  std::map<AdviceName, Logged<terra_msg::advice_t>> advice;
-  std::vector<Logged<terra_msg::pose_t>> poses;
+  /// The first kMaxVariants contents under each name; an honest advisor has
+  /// only one.
+  static constexpr std::size_t kMaxVariants = 4;
+  std::map<AdviceName, std::vector<Logged<terra_msg::advice_t>>> advice;
+  /// By session of the gate whose route the robot follows.
+  std::map<std::int64_t, std::vector<Logged<terra_msg::pose_t>>> poses;
   /// By session of the gate, then by number of the decision.
   std::map<std::int64_t, std::map<std::int64_t, Logged<Decided>>> decisions;
   /// By session of the sender.
-  std::map<std::int64_t, terra_msg::config_t> configs;
+  std::map<std::int64_t, Logged<terra_msg::config_t>> configs;
   std::vector<Logged<terra_msg::status_t>> statuses;
+
+  /// Event of the first DEPLOYED; beyond every index when there is none.
+  std::int64_t first_deployed = std::numeric_limits<std::int64_t>::max();
 
   std::vector<Conflict> conflicts;
   std::int64_t malformed = 0;
@@ -121,8 +124,12 @@ class LogContents {
 std::vector<std::uint8_t> Essence(terra_msg::baseline_t message);
 std::vector<std::uint8_t> Essence(terra_msg::advice_t message);
 std::vector<std::uint8_t> Essence(terra_msg::plan_request_t message);
+std::vector<std::uint8_t> Essence(terra_msg::config_t message);
 std::vector<std::uint8_t> Essence(terra_msg::deployed_t message);
 std::vector<std::uint8_t> Essence(terra_msg::verdict_t message);
 std::vector<std::uint8_t> Essence(const LogContents::Decided& message);
+
+/// Says a decision in a few words, for a finding.
+std::string InWords(const LogContents::Decided& decided);
 
 }  // namespace terra::logger

@@ -109,7 +109,7 @@ std::vector<RequestStory> Stories(const LogContents& contents) {
   for (const auto& [id, request] : contents.requests) {
     stories[id].asked_us = request.time_us;
   }
-  for (const auto& [digest, baseline] : contents.baselines) {
+  for (const auto& [name, baseline] : contents.baselines) {
     std::int64_t& first = stories[baseline.message.request_id].baseline_us;
     first = first == 0 ? baseline.time_us : std::min(first, baseline.time_us);
   }
@@ -247,9 +247,9 @@ std::string Maps(LogContents& contents,
     if (!map) continue;
     ++drawn;
     std::vector<DrawnRoute> routes;
-    const auto baseline = contents.baselines.find(last.baseline_digest);
-    if (baseline != contents.baselines.end()) {
-      routes.push_back({bus::WaypointsOf(baseline->second.message), "#1f4fe0"});
+    const auto* baseline = contents.FindBaseline(last.baseline_digest, 0);
+    if (baseline != nullptr) {
+      routes.push_back({bus::WaypointsOf(baseline->message), "#1f4fe0"});
     }
     if (last.mode == deployed_t::MODE_CANDIDATE) {
       routes.push_back({bus::WaypointsOf(last), "#0a8f2e"});
@@ -287,8 +287,9 @@ std::string Latencies(const LogContents& contents,
     add(refined, story.asked_us, story.refined_us);
   }
   for (const auto& [name, advice] : contents.advice) {
-    if (advice.message.t_llm_us > 0) {
-      add(model, 1, 1 + advice.message.t_llm_us);
+    const std::int64_t t_llm_us = advice.front().message.t_llm_us;
+    if (t_llm_us > 0) {
+      model.seconds.push_back(1e-6 * static_cast<double>(t_llm_us));
     }
   }
   for (const auto& [session, decisions] : contents.decisions) {
@@ -407,8 +408,7 @@ std::string AuditSection(const Audit& audit) {
 std::string MakeReport(const std::string& title, LogReader& reader) {
   SealChecker seals;
   LogContents contents = LogContents::Load(reader, seals);
-  Audit audit = AuditDecisions(contents);
-  AddDamage(reader, seals, audit);
+  const Audit audit = AuditContents(contents, reader, seals);
   const std::vector<RequestStory> stories = Stories(contents);
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"

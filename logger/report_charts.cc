@@ -129,9 +129,9 @@ void DrawAdvice(const LogContents& contents, Lanes& lanes) {
   std::map<std::string, std::vector<const Logged<terra_msg::advice_t>*>>
       by_name;
   for (const auto& [name, advice] : contents.advice) {
-    if (by_name.size() < kMaxLanes ||
-        by_name.contains(advice.message.advisor)) {
-      by_name[advice.message.advisor].push_back(&advice);
+    const std::string& advisor = advice.front().message.advisor;
+    if (by_name.size() < kMaxLanes || by_name.contains(advisor)) {
+      by_name[advisor].push_back(&advice.front());
     }
   }
   for (const auto& [name, all] : by_name) {
@@ -213,7 +213,7 @@ std::string TimeLine(const LogContents& contents) {
     lanes.Dot(cancel.time_us, kBadColor, "cancel " + std::to_string(id));
   }
   lanes.Begin("baselines");
-  for (const auto& [digest, baseline] : contents.baselines) {
+  for (const auto& [name, baseline] : contents.baselines) {
     lanes.Dot(baseline.time_us, kBaselineColor,
               baseline.message.planner + ", cost " +
                   Number(baseline.message.baseline_cost));

@@ -1,13 +1,26 @@
 #include "logger/state_snapshot.h"
 
+#include <algorithm>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "bus/messages.h"
 #include "terrain/digest.h"
 
 namespace terra::logger {
+namespace {
+
+// Every message begins with fingerprint, utime, session, seq, of 8 bytes each.
+bool SameButForStamps(std::span<const std::uint8_t> a,
+                      std::span<const std::uint8_t> b) {
+  const auto same = [&](std::size_t from, std::size_t length) {
+    return std::ranges::equal(a.subspan(from, length), b.subspan(from, length));
+  };
+  return a.size() == b.size() && same(0, 8) && same(16, 8) &&
+         same(32, a.size() - 32);
+}
+
+}  // namespace
 
 void StateSnapshot::Take(bus::Channel channel, const HeardEvent& event) {
   switch (channel) {
@@ -26,9 +39,10 @@ void StateSnapshot::Take(bus::Channel channel, const HeardEvent& event) {
     case bus::Channel::kPose:
       return TakeNewest<terra_msg::pose_t>(pose_, event);
     case bus::Channel::kDeployed:
-      return TakeNewest<terra_msg::deployed_t>(deployed_, event);
-    case bus::Channel::kMapRequest:
+      return TakeDeployed(event);
     case bus::Channel::kVerdict:
+      return TakeVerdict(event);
+    case bus::Channel::kMapRequest:
     case bus::Channel::kStatus:
     case bus::Channel::kLog:
       return;
@@ -45,49 +59,91 @@ void StateSnapshot::TakeNewest(Kept& kept, const HeardEvent& event) {
 void StateSnapshot::TakeHeader(const HeardEvent& event) {
   const auto header = bus::Decode<terra_msg::map_header_t>(event.data);
   if (!header) return;
-  if (outline_ && outline_->map_id == header->map_id) {
-    header_ = std::make_shared<const HeardEvent>(event);  // the newest stamps
+  if (map_ && map_->outline.map_id == header->map_id) {
+    map_->header = std::make_shared<const HeardEvent>(event);  // newest stamps
     return;
   }
   Result<bus::MapOutline> outline = bus::ReadMapHeader(*header);
   if (!outline) return;
-  header_ = std::make_shared<const HeardEvent>(event);
-  const bool same_grid = outline_ &&
-                         outline_->grid.width == outline->grid.width &&
-                         outline_->grid.height == outline->grid.height;
-  std::vector<Kept> tiles(outline->tile_digests.size());
-  for (std::size_t i = 0; same_grid && i < tiles.size(); ++i) {
-    if (outline_->tile_digests[i] == outline->tile_digests[i]) {
-      tiles[i] = tiles_[i];
+  KeptMap next{
+      std::make_shared<const HeardEvent>(event), *std::move(outline), {}};
+  next.tiles.resize(next.outline.tile_digests.size());
+  for (const auto& known : {map_, old_map_}) {
+    if (!known || known->outline.grid.width != next.outline.grid.width ||
+        known->outline.grid.height != next.outline.grid.height) {
+      continue;
+    }
+    for (std::size_t i = 0; i < next.tiles.size(); ++i) {
+      if (!next.tiles[i] &&
+          known->outline.tile_digests[i] == next.outline.tile_digests[i]) {
+        next.tiles[i] = known->tiles[i];
+      }
     }
   }
-  tiles_ = std::move(tiles);
-  outline_ = *std::move(outline);
+  if (map_ && map_->outline.map_id == deployed_map_id_) {
+    old_map_ = std::move(map_);
+  }
+  map_ = std::move(next);
+  DropOldMap();
+}
+
+// The gate decides on a map only when it has all of it, so the one before stays
+// until DEPLOYED names another.
+void StateSnapshot::DropOldMap() {
+  if (old_map_ && (old_map_->outline.map_id != deployed_map_id_ ||
+                   map_->outline.map_id == deployed_map_id_)) {
+    old_map_.reset();
+  }
+}
+
+void StateSnapshot::TakeDeployed(const HeardEvent& event) {
+  const auto deployed = bus::Decode<terra_msg::deployed_t>(event.data);
+  if (!deployed) return;
+  GateOf(deployed->session).deployed =
+      std::make_shared<const HeardEvent>(event);
+  deployed_map_id_ = deployed->map_id;
+  DropOldMap();
+}
+
+void StateSnapshot::TakeVerdict(const HeardEvent& event) {
+  const auto verdict = bus::Decode<terra_msg::verdict_t>(event.data);
+  if (!verdict) return;
+  GateOf(verdict->session).verdict = std::make_shared<const HeardEvent>(event);
+}
+
+StateSnapshot::KeptGate& StateSnapshot::GateOf(std::int64_t session) {
+  const auto known = std::ranges::find(gates_, session, &KeptGate::session);
+  if (known != gates_.end()) return *known;
+  if (gates_.size() == kMaxGates) gates_.pop_front();
+  return gates_.emplace_back(KeptGate{session, nullptr, nullptr});
 }
 
 void StateSnapshot::TakeTiles(const HeardEvent& event) {
-  if (!outline_) return;
+  if (!map_) return;
   const auto message = bus::Decode<terra_msg::map_tile_t>(event.data);
   if (!message) return;
-  Kept kept;
+  const auto kept = std::make_shared<const HeardEvent>(event);
   std::span<const std::uint8_t> data(message->tile_data);
   for (std::size_t i = 0; i < message->tile_index.size(); ++i) {
     const std::int32_t size = message->tile_size[i];
     if (size < 0 || static_cast<std::size_t>(size) > data.size()) return;
     const auto frame = data.first(static_cast<std::size_t>(size));
     data = data.subspan(frame.size());
-    const std::int32_t index = message->tile_index[i];
-    if (index < 0 || index >= outline_->grid.count()) continue;
-    Kept& tile = tiles_[static_cast<std::size_t>(index)];
-    if (tile) continue;
-    // The digest in the message is only what its sender says.
-    const auto ids = bus::UnpackTile(frame, outline_->grid.rect(index).cells());
-    if (!ids || TileDigest(*ids) !=
-                    outline_->tile_digests[static_cast<std::size_t>(index)]) {
-      continue;
-    }
-    if (!kept) kept = std::make_shared<const HeardEvent>(event);
-    tile = kept;
+    TakeTile(kept, message->tile_index[i], frame);
+  }
+}
+
+void StateSnapshot::TakeTile(const Kept& message, std::int32_t index,
+                             std::span<const std::uint8_t> frame) {
+  const bus::MapOutline& outline = map_->outline;
+  if (index < 0 || index >= outline.grid.count()) return;
+  Kept& tile = map_->tiles[static_cast<std::size_t>(index)];
+  if (tile) return;
+  // The digest in the message is only what its sender says.
+  const auto ids = bus::UnpackTile(frame, outline.grid.rect(index).cells());
+  if (ids && TileDigest(*ids) ==
+                 outline.tile_digests[static_cast<std::size_t>(index)]) {
+    tile = message;
   }
 }
 
@@ -103,43 +159,45 @@ void StateSnapshot::TakeConfig(const HeardEvent& event) {
 void StateSnapshot::TakeBaseline(const HeardEvent& event) {
   const auto baseline = bus::Decode<terra_msg::baseline_t>(event.data);
   if (!baseline) return;
-  const auto kept = std::make_shared<const HeardEvent>(event);
-  if (baseline->baseline_digest == baseline_digest_ && !baselines_.empty()) {
-    baselines_.back() = kept;
-    return;
-  }
-  baseline_digest_ = baseline->baseline_digest;
-  advice_.clear();
-  baselines_.push_back(kept);
+  // Those without a route have digest 0, and the newest counts.
+  std::erase_if(baselines_, [&baseline](const KeptBaseline& known) {
+    return known.digest == baseline->baseline_digest &&
+           known.planner == baseline->session;
+  });
+  baselines_.push_back({baseline->baseline_digest, baseline->session,
+                        std::make_shared<const HeardEvent>(event)});
   if (baselines_.size() > kMaxBaselines) baselines_.pop_front();
 }
 
 void StateSnapshot::TakeAdvice(const HeardEvent& event) {
-  const auto advice = bus::Decode<terra_msg::advice_t>(event.data);
-  if (!advice || advice->baseline_digest != baseline_digest_ ||
-      baseline_digest_ == 0) {
-    return;
-  }
-  const std::array<std::int64_t, 3> key = {advice->session, advice->attempt,
-                                           advice->candidate};
-  if (advice_.size() < kMaxAdvice || advice_.contains(key)) {
-    advice_[key] = std::make_shared<const HeardEvent>(event);
-  }
+  if (!bus::Decode<terra_msg::advice_t>(event.data)) return;
+  // Repetitions differ in the envelope only, and the first one is judged.
+  const auto repeats = [&event](const Kept& known) {
+    return SameButForStamps(known->data, event.data);
+  };
+  if (std::ranges::any_of(advice_, repeats)) return;
+  advice_.push_back(std::make_shared<const HeardEvent>(event));
+  if (advice_.size() > kMaxAdvice) advice_.pop_front();
 }
 
 void StateSnapshot::Visit(
     const std::function<void(const HeardEvent&)>& visit) const {
   for (const auto& [name, config] : configs_) visit(*config);
-  if (header_) visit(*header_);
   std::set<const HeardEvent*> visited;
-  for (const Kept& tile : tiles_) {
-    if (tile && visited.insert(tile.get()).second) visit(*tile);
+  for (const auto& map : {old_map_, map_}) {
+    if (!map) continue;
+    visit(*map->header);
+    for (const Kept& tile : map->tiles) {
+      if (tile && visited.insert(tile.get()).second) visit(*tile);
+    }
   }
   if (request_) visit(*request_);
-  for (const Kept& baseline : baselines_) visit(*baseline);
-  for (const auto& [key, advice] : advice_) visit(*advice);
-  for (const Kept& kept : {pose_, deployed_}) {
-    if (kept) visit(*kept);
+  for (const KeptBaseline& baseline : baselines_) visit(*baseline.message);
+  for (const Kept& advice : advice_) visit(*advice);
+  if (pose_) visit(*pose_);
+  for (const KeptGate& gate : gates_) {
+    if (gate.deployed) visit(*gate.deployed);
+    if (gate.verdict) visit(*gate.verdict);
   }
 }
 

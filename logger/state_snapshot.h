@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,19 +19,23 @@ namespace terra::logger {
 /// The messages that make up the state in force, as they came. Each part of a
 /// log begins with them, so that it can be audited without the parts before.
 ///
-/// Keeps the newest CONFIG of each process, MAP_HEADER and the tiles that it
-/// lists, the newest PLAN_REQUEST, POSE and DEPLOYED, the newest baselines
-/// (what is deployed may be an older one), and the advice on the current one
-/// (its verdict may come in the next part).
+/// Keeps the newest CONFIG of each process; the map of the newest MAP_HEADER,
+/// with the tiles that it lists, and the map that DEPLOYED names if that is
+/// another; the newest PLAN_REQUEST and POSE; the newest baselines (what is
+/// deployed may be an older one) and advice (its verdict may come in the next
+/// part); and of each gate the newest DEPLOYED, and the newest VERDICT, which
+/// tells how many decisions there were before.
 ///
-/// Bounds: a map's compressed tiles, kMaxProcesses configurations, kMaxAdvice
-///         advices. Malformed messages change nothing.
+/// Bounds: two maps' compressed tiles, kMaxProcesses configurations,
+///         kMaxBaselines, kMaxAdvice, kMaxGates. Malformed messages change
+///         nothing.
 /// Threads: one.
 class StateSnapshot {
  public:
   static constexpr std::size_t kMaxProcesses = 64;
   static constexpr std::size_t kMaxAdvice = 64;
   static constexpr std::size_t kMaxBaselines = 8;
+  static constexpr std::size_t kMaxGates = 4;
 
   void Take(bus::Channel channel, const HeardEvent& event);
 
@@ -40,25 +44,47 @@ class StateSnapshot {
 
  private:
   using Kept = std::shared_ptr<const HeardEvent>;
+  struct KeptMap {
+    Kept header;
+    bus::MapOutline outline;
+    std::vector<Kept> tiles;  // One message may carry several.
+  };
+  struct KeptBaseline {
+    std::int64_t digest = 0;
+    std::int64_t planner = 0;  // Its session: two may find the same route.
+    Kept message;
+  };
+  // One session of the gate; it deploys nothing before it is asked for a route.
+  struct KeptGate {
+    std::int64_t session = 0;
+    Kept deployed;
+    Kept verdict;
+  };
 
   void TakeHeader(const HeardEvent& event);
   void TakeTiles(const HeardEvent& event);
+  void TakeTile(const Kept& message, std::int32_t index,
+                std::span<const std::uint8_t> frame);
   void TakeConfig(const HeardEvent& event);
   void TakeBaseline(const HeardEvent& event);
   void TakeAdvice(const HeardEvent& event);
+  void TakeDeployed(const HeardEvent& event);
+  void TakeVerdict(const HeardEvent& event);
+  KeptGate& GateOf(std::int64_t session);
+  void DropOldMap();
   template <typename T>
   void TakeNewest(Kept& kept, const HeardEvent& event);
 
   std::map<std::string, Kept> configs_;
-  Kept header_;
-  std::optional<bus::MapOutline> outline_;
-  std::vector<Kept> tiles_;  // One message may carry several.
+  std::optional<KeptMap> map_;
+  std::optional<KeptMap> old_map_;  // That DEPLOYED still names.
   Kept request_;
-  std::deque<Kept> baselines_;  // Of different digests, the newest last.
-  std::int64_t baseline_digest_ = 0;
-  std::map<std::array<std::int64_t, 3>, Kept> advice_;
+  // Different ones, the newest last.
+  std::deque<KeptBaseline> baselines_;
+  std::deque<Kept> advice_;
   Kept pose_;
-  Kept deployed_;
+  std::deque<KeptGate> gates_;  // The one that began last is last.
+  std::int64_t deployed_map_id_ = 0;
 };
 
 }  // namespace terra::logger

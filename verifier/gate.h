@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "terrain/map.h"
 #include "terrain/driven_route.h"
+#include "terrain/map.h"
 #include "verifier/gate_memory.h"
 #include "verifier/gate_messages.h"
 #include "verifier/verify.h"
@@ -36,6 +36,7 @@ struct GateCounters {
 /// unbounded memory. The same events in the same order give the same decisions.
 ///
 /// docs/gate.md states its rules and the invariants that the tests hold it to.
+/// A copy goes on from the same state (the audit tries events on copies).
 /// Threads: one.
 class Gate {
  public:
@@ -49,6 +50,8 @@ class Gate {
 
   /// What is in force, to be repeated while it is; request_id 0 = nothing yet.
   const Deployed& deployed() const { return deployed_; }
+  /// The deployed route and how far the robot has come along it.
+  const DrivenRoute& driven() const { return driven_; }
   const GateCounters& counters() const { return counters_; }
   bool has_map() const { return map_ != nullptr; }
 

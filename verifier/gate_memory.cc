@@ -17,17 +17,15 @@ bool ReplacedIds::Has(std::int64_t id) const {
 bool JudgedAdvice::Add(const AdviceEvent& event) {
   const Key key = {event.request_id, event.map_id,  event.baseline_digest,
                    event.session,    event.attempt, event.candidate};
-  const auto known = known_.find(key);
-  if (known != known_.end()) {
-    by_age_.splice(by_age_.end(), by_age_, known->second);
-    return false;
-  }
-  known_.emplace(key, by_age_.insert(by_age_.end(), key));
+  const auto [known, is_new] = known_.try_emplace(key);
+  if (!is_new) by_age_.erase(known->second);
+  known->second = ++heard_;
+  by_age_.emplace(heard_, key);
   if (by_age_.size() > capacity_) {
-    known_.erase(by_age_.front());
-    by_age_.pop_front();
+    known_.erase(by_age_.begin()->second);
+    by_age_.erase(by_age_.begin());
   }
-  return true;
+  return is_new;
 }
 
 }  // namespace terra::verifier

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <list>
 #include <map>
 #include <tuple>
 
@@ -41,8 +40,10 @@ class JudgedAdvice {
                          std::int64_t, std::int32_t>;
 
   std::size_t capacity_;
-  std::list<Key> by_age_;  // the longest unheard first
-  std::map<Key, std::list<Key>::iterator> known_;
+  std::int64_t heard_ = 0;
+  std::map<std::int64_t, Key>
+      by_age_;  // when last heard, the longest ago first
+  std::map<Key, std::int64_t> known_;
 };
 
 }  // namespace terra::verifier

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "advisor/recording.h"
+#include "advisor/recording_clients.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/files/whole_file.h"
 #include "terrain/route_cost.h"

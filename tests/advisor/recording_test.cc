@@ -10,6 +10,7 @@
 
 #include "advisor/exchange_client.h"
 #include "advisor/limited_client.h"
+#include "advisor/recording_clients.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::advisor {

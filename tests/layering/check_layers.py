@@ -11,7 +11,7 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
 FOLDERS = ["terrain", "bus", "planner", "verifier", "advisor", "logger",
-           "benchmark", "cli"]
+           "benchmark", "chaos", "cli"]
 
 # Project folders that a folder may include, besides itself. "terrain" is the
 # pure ground truth; "terrain/files" are its readers and writers.
@@ -25,6 +25,7 @@ ALLOWED = {
     "logger": {"terrain", "verifier", "bus", "terra_msg"},
     "benchmark": {"terrain", "terrain/files", "planner", "advisor",
                   "verifier"},
+    "chaos": {"terrain", "verifier", "bus", "terra_msg"},
     # A program that measures all of it.
     "benchmark/speed": {"terrain", "planner", "advisor", "verifier",
                         "benchmark", "bus"},

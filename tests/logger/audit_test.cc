@@ -1,208 +1,69 @@
 #include "logger/audit.h"
 
-#include <filesystem>
-#include <functional>
-#include <memory>
+#include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "bus/codec.h"
-#include "bus/map_node.h"
-#include "logger/state_snapshot.h"
-#include "planner/planner_node.h"
-#include "terrain/builtin_legends.h"
-#include "terrain/files/map_file.h"
-#include "terrain/segment.h"
-#include "tests/support/random_map.h"
-#include "tests/support/temp_folder.h"
-#include "tests/support/virtual_network.h"
-#include "verifier/verifier_node.h"
+#include "logger/recorder.h"
+#include "tests/logger/recorded_run.h"
 
 namespace terra::logger {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 using terra_msg::advice_t;
-using terra_msg::baseline_t;
 using terra_msg::deployed_t;
-using terra_msg::plan_request_t;
+using terra_msg::verdict_t;
 using testing::TempFolder;
-using testing::VirtualNetwork;
 
-using Bytes = std::vector<std::uint8_t>;
-using Messages = std::vector<bus::RawMessage>;
-
-constexpr Cell kStart = {5, 60};
-constexpr Cell kGoal = {155, 60};
-// Through the open top of the bar.
-const Route kOverTheTop = {kStart, {60, 20}, {100, 20}, kGoal};
-const Route kHigherUp = {kStart, {60, 10}, {100, 10}, kGoal};
-const Route kThroughTheBar = {kStart, kGoal};
-
-TerrainMap BarMap(int bar_id, int hole_y = -1) {
-  ByteRaster ids = ByteRaster::Zero(120, 160);
-  ids.block(30, 70, 90, 20).setConstant(static_cast<std::uint8_t>(bar_id));
-  if (hole_y >= 0) ids.block(hole_y, 70, 5, 20).setConstant(2);
-  return TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value();
-}
-
-// Plays a run of the deployed path in virtual time and keeps what was said.
-class RecordedRun {
- public:
-  RecordedRun() {
-    SaveMap(BarMap(10));
-    network_.Start("map", [this](bus::Outbox& out) {
-      auto node = std::make_unique<bus::MapNode>(folder_.Path("map.png"),
-                                                 MapFileOptions{}, out);
-      EXPECT_TRUE(node->Load().ok());
-      return node;
-    });
-    network_.Start("planner", [](bus::Outbox& out) {
-      return std::make_unique<planner::PlannerNode>(
-          "planner",
-          [](const TerrainMap& map, Cell start, Cell goal) {
-            return planner::PlanOnLattice(map, start, goal, {.stride = 20});
-          },
-          out);
-    });
-    network_.Start("gate", [](bus::Outbox& out) {
-      auto node = std::make_unique<verifier::VerifierNode>(
-          verifier::GateOptions{}, out);
-      node->ListenToAdvice();
-      return node;
-    });
-    network_.Run(seconds(1));
+std::int64_t DecisionsIn(const Messages& messages) {
+  std::map<std::int64_t, std::int64_t> last;
+  for (const verdict_t& verdict : Said<verdict_t>(messages)) {
+    last[verdict.session] = std::max(last[verdict.session], verdict.decision);
   }
-
-  void SaveMap(const TerrainMap& map) {
-    const std::string path = folder_.Path("map.png");
-    ASSERT_TRUE(WriteIdPng(map, path).ok());
-    std::filesystem::last_write_time(
-        path, std::filesystem::last_write_time(path) + seconds(++saves_));
+  for (const deployed_t& deployed : Said<deployed_t>(messages)) {
+    last[deployed.session] =
+        std::max(last[deployed.session], deployed.decision);
   }
-  void Ask(std::int64_t request_id, bool cancel = false) {
-    plan_request_t request{};
-    request.session = 1;
-    request.seq = ++said_;
-    request.request_id = request_id;
-    request.action =
-        cancel ? plan_request_t::ACTION_CANCEL : plan_request_t::ACTION_GO;
-    request.start_x = kStart.x;
-    request.start_y = kStart.y;
-    request.goal_x = kGoal.x;
-    request.goal_y = kGoal.y;
-    Inject(request);
-  }
-  baseline_t Baseline() const { return network_.Sent<baseline_t>().back(); }
-  void Advise(const baseline_t& baseline, std::int64_t attempt,
-              const Route& route, std::int8_t kind = advice_t::KIND_PROPOSE) {
-    advice_t advice{};
-    advice.session = 77;
-    advice.seq = ++said_;
-    advice.request_id = baseline.request_id;
-    advice.map_id = baseline.map_id;
-    advice.baseline_digest = baseline.baseline_digest;
-    advice.anchor_x = kStart.x;
-    advice.anchor_y = kStart.y;
-    advice.advisor = "test";
-    advice.attempt = attempt;
-    advice.kind = kind;
-    bus::SetWaypoints(advice, route);
-    Inject(advice);
-  }
-  template <typename T>
-  void Inject(const T& message) {
-    network_.Inject(message);
-    network_.Run(milliseconds(300));
-  }
-  void Run(bus::Duration duration) { network_.Run(duration); }
-
-  const Messages& messages() const { return network_.messages(); }
-
- private:
-  TempFolder folder_;
-  VirtualNetwork network_;
-  int saves_ = 0;
-  std::int64_t said_ = 0;
-};
-
-// Requests, advice of every kind, two map updates, a cancel.
-Messages EventfulRun() {
-  RecordedRun run;
-  run.Ask(11);
-  const baseline_t first = run.Baseline();
-  run.Advise(first, 1, kOverTheTop);
-  run.Advise(first, 2, kHigherUp);  // not best
-  run.Advise(first, 3, kThroughTheBar);
-  run.Advise(first, 4, {}, advice_t::KIND_RETAIN);
-  run.Advise(first, 5, {kStart, {400, 3}, kGoal});
-  run.Advise(first, 6, {}, advice_t::KIND_MALFORMED);
-  run.SaveMap(BarMap(10, 60));  // a way through the bar
-  run.Run(seconds(3));
-  run.Advise(first, 7, kOverTheTop);  // stale map
-  run.Advise(run.Baseline(), 8, kThroughTheBar);
-  run.Ask(12);
-  run.Advise(first, 9, kOverTheTop);  // stale request
-  run.Advise(run.Baseline(), 10, kThroughTheBar);
-  run.SaveMap(BarMap(11));
-  run.Run(seconds(3));
-  run.Ask(12, true);
-  return run.messages();
-}
-
-Bytes LogOf(const Messages& messages) {
-  Bytes bytes;
-  std::int64_t number = 0;
-  for (const bus::RawMessage& message : messages) {
-    AppendLogEvent(bytes, {number, 1'000 * number,
-                           bus::BaseName(message.channel), message.bytes});
-    ++number;
-  }
-  return bytes;
-}
-
-Audit AuditOf(const Messages& messages) {
-  const Bytes bytes = LogOf(messages);
-  LogReader reader(bytes);
-  return AuditLog(reader);
-}
-
-std::string Text(const Audit& audit) {
-  std::string text;
-  for (const Finding& finding : audit.findings) {
-    text += std::string(KindName(finding.kind)) + " at decision " +
-            std::to_string(finding.decision) + ": " + finding.what + "\n";
-  }
-  return text;
-}
-
-template <typename T>
-std::vector<T> Said(const Messages& messages) {
-  std::vector<T> said;
-  for (const bus::RawMessage& message : messages) {
-    if (message.channel != bus::MessageTraits<T>::kChannel) continue;
-    said.push_back(bus::Decode<T>(message.bytes).value());
-  }
-  return said;
+  std::int64_t all = 0;
+  for (const auto& [session, decisions] : last) all += decisions;
+  return all;
 }
 
 TEST(Audit, EveryDecisionOfAnHonestLogIsMadeAgain) {
   const Messages messages = EventfulRun();
   const Audit audit = AuditOf(messages);
   EXPECT_TRUE(audit.clean()) << Text(audit);
-  EXPECT_EQ(audit.sessions, 1);
+  EXPECT_EQ(audit.sessions, 2);
   EXPECT_EQ(audit.anchors, 0);
-  const auto verdicts = Said<terra_msg::verdict_t>(messages);
-  EXPECT_EQ(audit.verdicts, std::ssize(verdicts));
-  EXPECT_GE(audit.verdicts, 10);
-  std::int64_t last_decision = 0;
-  for (const deployed_t& deployed : Said<deployed_t>(messages)) {
-    last_decision = std::max(last_decision, deployed.decision);
+  EXPECT_EQ(audit.verdicts, std::ssize(Said<verdict_t>(messages)));
+  EXPECT_EQ(audit.verdicts + audit.deployed, DecisionsIn(messages));
+}
+
+TEST(Audit, TheEventfulRunHasEveryKindOfVerdict) {
+  std::map<int, int> codes;
+  for (const verdict_t& verdict : Said<verdict_t>(EventfulRun())) {
+    ++codes[verdict.code];
   }
-  EXPECT_EQ(audit.verdicts + audit.deployed, last_decision);
+  for (const std::int16_t code :
+       {verdict_t::CODE_ACCEPTED, verdict_t::CODE_RETAINED,
+        verdict_t::CODE_PARSE_ERROR, verdict_t::CODE_OUT_OF_BOUNDS,
+        verdict_t::CODE_NOT_BEST, verdict_t::CODE_STALE_REQUEST,
+        verdict_t::CODE_STALE_MAP, verdict_t::CODE_LATE,
+        verdict_t::CODE_MALFORMED_MESSAGE}) {
+    EXPECT_GT(codes[code], 0) << "code " << code;
+  }
+}
+
+TEST(Audit, EveryDecisionOfARandomRunIsMadeAgain) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Messages messages = RandomRun(seed);
+    const Audit audit = AuditOf(messages);
+    EXPECT_TRUE(audit.clean()) << "seed " << seed << ": " << Text(audit);
+    EXPECT_EQ(audit.verdicts + audit.deployed, DecisionsIn(messages));
+  }
 }
 
 TEST(Audit, TheOrderOfTheLogDoesNotMatter) {
@@ -210,48 +71,174 @@ TEST(Audit, TheOrderOfTheLogDoesNotMatter) {
   // Advice is heard by another socket, so it may be logged after its verdict.
   std::stable_partition(messages.begin(), messages.end(),
                         [](const bus::RawMessage& message) {
-                          return message.channel == bus::Channel::kVerdict ||
+                          return message.channel == bus::Channel::kPose ||
+                                 message.channel == bus::Channel::kVerdict ||
                                  message.channel == bus::Channel::kDeployed;
                         });
   const Audit audit = AuditOf(messages);
   EXPECT_TRUE(audit.clean()) << Text(audit);
 }
 
+// Records a run, a new part beginning after so many messages.
+std::vector<std::string> RecordParts(const Messages& messages,
+                                     std::size_t per_part,
+                                     const TempFolder& folder) {
+  RecorderOptions options;
+  options.part_bytes = 1;  // whenever it is flushed
+  Recorder recorder = Recorder::Start(folder.Path(""), options, 1).value();
+  std::vector<std::string> parts = {recorder.path()};
+  std::size_t recorded = 0;
+  for (const bus::RawMessage& message : messages) {
+    recorder.Record(
+        {1, std::string(bus::BaseName(message.channel)), message.bytes});
+    if (++recorded % per_part != 0) continue;
+    EXPECT_TRUE(recorder.Flush(1).ok());
+    parts.push_back(recorder.path());
+  }
+  EXPECT_TRUE(recorder.Close(1).ok());
+  return parts;
+}
+
+TEST(Audit, EachPartOfARecordingIsAuditedAlone) {
+  for (std::uint64_t seed = 0; seed <= 12; ++seed) {
+    const Messages messages = seed == 0 ? EventfulRun() : RandomRun(seed);
+    const TempFolder folder;
+    std::int64_t made_again = 0;
+    for (const std::string& part :
+         RecordParts(messages, seed == 0 ? 7 : 23, folder)) {
+      Result<LogReader> reader = LogReader::Open(part);
+      ASSERT_TRUE(reader.ok());
+      const Audit audit = AuditLog(*reader);
+      EXPECT_TRUE(audit.clean())
+          << "seed " << seed << ", " << part << ": " << Text(audit);
+      made_again += audit.verdicts + audit.deployed;
+    }
+    EXPECT_EQ(made_again, DecisionsIn(messages)) << "seed " << seed;
+  }
+}
+
+TEST(Audit, ALogThatBeginsInMidRunIsCleanFromItsFirstDeployedOn) {
+  const Messages messages = EventfulRun();
+  // The map was sent long ago, but a recorder asks for it.
+  Messages map;
+  for (const bus::RawMessage& message : messages) {
+    if (message.channel == bus::Channel::kMapHeader ||
+        message.channel == bus::Channel::kMapTile ||
+        message.channel == bus::Channel::kConfig) {
+      map.push_back(message);
+    }
+  }
+  for (std::size_t cut = 1; cut < messages.size(); cut += 5) {
+    Messages rest = map;
+    rest.insert(rest.end(), messages.begin() + static_cast<std::ptrdiff_t>(cut),
+                messages.end());
+    const Audit audit = AuditOf(rest);
+    for (const Finding& finding : audit.findings) {
+      // Inputs of the first decisions may lie before the log.
+      EXPECT_EQ(finding.kind, Finding::Kind::kMissingInput)
+          << "cut at " << cut << ": " << Text(audit);
+    }
+  }
+}
+
 TEST(Audit, AMissingInputIsNamed) {
   Messages messages = EventfulRun();
-  std::erase_if(messages, [](const bus::RawMessage& message) {
-    return message.channel == bus::Channel::kAdvice &&
-           bus::Decode<advice_t>(message.bytes)->attempt == 3;
+  std::int64_t attempt = 0;
+  std::erase_if(messages, [&attempt](const bus::RawMessage& message) {
+    if (message.channel != bus::Channel::kAdvice || attempt != 0) return false;
+    attempt = bus::Decode<advice_t>(message.bytes)->attempt;
+    return true;
   });
   const Audit audit = AuditOf(messages);
   ASSERT_FALSE(audit.clean());
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
-  EXPECT_NE(audit.findings[0].what.find("attempt 3"), std::string::npos);
+  EXPECT_NE(audit.findings[0].what.find("attempt " + std::to_string(attempt)),
+            std::string::npos);
 }
 
-TEST(Audit, AForgedVerdictIsAMismatch) {
-  Messages messages = EventfulRun();
+template <typename Change>
+Messages WithChangedVerdict(Messages messages, Change change) {
   for (bus::RawMessage& message : messages) {
     if (message.channel != bus::Channel::kVerdict) continue;
-    auto verdict = *bus::Decode<terra_msg::verdict_t>(message.bytes);
-    verdict.candidate_cost = 1.0;
+    auto verdict = *bus::Decode<verdict_t>(message.bytes);
+    change(verdict);
     message.bytes = bus::Encode(verdict);
     break;
   }
-  const Audit audit = AuditOf(messages);
+  return messages;
+}
+
+TEST(Audit, AForgedVerdictIsAMismatch) {
+  const Audit audit =
+      AuditOf(WithChangedVerdict(EventfulRun(), [](verdict_t& verdict) {
+        verdict.candidate_cost = 1.0;
+      }));
   ASSERT_FALSE(audit.clean());
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMismatch);
+}
+
+TEST(Audit, TheTimeOfTheCheckAndTheEnvelopeMayDiffer) {
+  const Audit audit =
+      AuditOf(WithChangedVerdict(EventfulRun(), [](verdict_t& verdict) {
+        verdict.t_det_us += 17;
+        verdict.utime += 17;
+        verdict.seq += 17;
+      }));
+  EXPECT_TRUE(audit.clean()) << Text(audit);
 }
 
 TEST(Audit, AMissingDecisionIsAGap) {
   Messages messages = EventfulRun();
   std::erase_if(messages, [](const bus::RawMessage& message) {
     return message.channel == bus::Channel::kVerdict &&
-           bus::Decode<terra_msg::verdict_t>(message.bytes)->attempt == 4;
+           bus::Decode<verdict_t>(message.bytes)->code ==
+               verdict_t::CODE_RETAINED;
   });
   const Audit audit = AuditOf(messages);
   ASSERT_FALSE(audit.clean());
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kGap);
+}
+
+TEST(Audit, AForgedStateThatALogBeginsWithIsAMismatch) {
+  Messages messages = EventfulRun();
+  // Only the baseline, the map and what is deployed at the end.
+  const auto deployed = Said<deployed_t>(messages);
+  const auto last = std::find_if(
+      deployed.rbegin(), deployed.rend(), [](const deployed_t& message) {
+        return message.mode == deployed_t::MODE_CANDIDATE;
+      });
+  ASSERT_NE(last, deployed.rend());
+  std::erase_if(messages, [](const bus::RawMessage& message) {
+    return message.channel == bus::Channel::kVerdict ||
+           message.channel == bus::Channel::kDeployed;
+  });
+  messages.push_back({bus::Channel::kDeployed, bus::Encode(*last)});
+  EXPECT_TRUE(AuditOf(messages).clean()) << Text(AuditOf(messages));
+  deployed_t forged = *last;
+  forged.deployed_cost -= 1;
+  messages.back().bytes = bus::Encode(forged);
+  EXPECT_FALSE(AuditOf(messages).clean());
+}
+
+// An advisor that says two things under one name is no fault of the gate, if
+// the seals show that the log is as it was heard.
+TEST(Audit, AnAdvisorsContradictionIsANoteInASealedLog) {
+  Messages messages = EventfulRun();
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (messages[i].channel != bus::Channel::kAdvice) continue;
+    auto advice = *bus::Decode<advice_t>(messages[i].bytes);
+    advice.waypoint_x.at(0) += 1;
+    messages.insert(messages.begin() + static_cast<std::ptrdiff_t>(i),
+                    {bus::Channel::kAdvice, bus::Encode(advice)});
+    break;
+  }
+  EXPECT_FALSE(AuditOf(messages).clean());
+  const TempFolder folder;
+  Result<LogReader> reader =
+      LogReader::Open(RecordParts(messages, 1'000'000, folder).at(0));
+  const Audit audit = AuditLog(*reader);
+  EXPECT_TRUE(audit.clean()) << Text(audit);
+  EXPECT_EQ(audit.notes.size(), 1U);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST(Recorder, EachPartBeginsWithTheStateInForce) {
   EXPECT_NE(contents.maps.Find(map.header.map_id), nullptr);
   EXPECT_TRUE(contents.configs.contains(9));
   EXPECT_TRUE(contents.requests.contains(77));
-  EXPECT_TRUE(contents.baselines.contains(4));
+  EXPECT_NE(contents.FindBaseline(4, 0), nullptr);
   EXPECT_THAT(contents.advice, SizeIs(1));
   EXPECT_TRUE(contents.decisions.at(9).contains(12));
 }

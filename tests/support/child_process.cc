@@ -96,6 +96,18 @@ void ChildProcess::Kill() {
   WaitForExit(milliseconds(-1));
 }
 
+bool ChildProcess::WaitForOutput(const std::string& text,
+                                 milliseconds at_most) {
+  const auto give_up = std::chrono::steady_clock::now() + at_most;
+  bool ended = false;
+  while (true) {
+    if (output().find(text) != std::string::npos) return true;
+    if (ended || std::chrono::steady_clock::now() > give_up) return false;
+    // A file has no event for being written to, so this looks again and again.
+    ended = WaitForExit(milliseconds(5)).has_value();
+  }
+}
+
 std::string ChildProcess::output() const {
   std::string text;
   char buffer[4096];

@@ -34,6 +34,10 @@ class ChildProcess {
   /// SIGKILL, and it is gone on return.
   void Kill();
 
+  /// Waits until it has written this; false when it ended without, or after
+  /// the time.
+  bool WaitForOutput(const std::string& text,
+                     std::chrono::milliseconds at_most);
   /// What it wrote so far to standard output and error.
   std::string output() const;
 

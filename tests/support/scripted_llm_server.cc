@@ -194,7 +194,10 @@ ScriptedLlmServer::~ScriptedLlmServer() {
   shutdown(listener_, SHUT_RDWR);
   accepting_.join();
   close(listener_);
-  for (std::thread& thread : serving_) thread.join();
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] {
+    return serving_ == 0;
+  });
 }
 
 std::string ScriptedLlmServer::url() const {
@@ -222,9 +225,10 @@ void ScriptedLlmServer::Accept() {
       return;
     }
     open_.push_back(socket);
-    serving_.emplace_back([this, socket] {
+    ++serving_;
+    std::thread([this, socket] {
       Serve(socket);
-    });
+    }).detach();
   }
 }
 
@@ -246,6 +250,8 @@ void ScriptedLlmServer::Serve(int socket) {
   const std::scoped_lock lock(mutex_);
   std::erase(open_, socket);
   close(socket);
+  --serving_;
+  changed_.notify_all();  // Locked, so that the object outlives the call.
 }
 
 bool ScriptedLlmServer::Play(int socket, const ScriptedReply& reply) {

@@ -79,7 +79,7 @@ class ScriptedLlmServer {
   std::condition_variable changed_;
   std::deque<SeenRequest> seen_;
   std::vector<int> open_;
-  std::vector<std::thread> serving_;
+  int serving_ = 0;  ///< Threads, detached so that none is kept when done.
   bool ending_ = false;
   std::thread accepting_;
 };

@@ -299,15 +299,17 @@ TEST(RealProcesses, MonitorShowsRouteVerdictsAndProcesses) {
   StartDeployedPath(robot);
   robot.Start("advisor");
   testing::ChildProcess monitor({testing::ProgramPath("terra"), "monitor",
-                                 "--lcm-url", robot.buses().url(), "--for",
-                                 "2.5"});
+                                 "--lcm-url", robot.buses().url()});
+  // It shows what it heard since its start, so the request waits for it.
+  ASSERT_TRUE(monitor.WaitForOutput("planner", testing::BusPeer::kPatience));
   ASSERT_TRUE(robot.Ask(11, kStart, kGoal));
-  ASSERT_EQ(monitor.WaitForExit(testing::BusPeer::kPatience), 0);
-  const std::string view = monitor.output();
   for (const char* part : {"160 x 120", "candidate of advisor", "accepted",
-                           "planner", "ready, candidate deployed"}) {
-    EXPECT_NE(view.find(part), std::string::npos) << part << " in\n" << view;
+                           "ready, candidate deployed"}) {
+    EXPECT_TRUE(monitor.WaitForOutput(part, testing::BusPeer::kPatience))
+        << part << " in\n"
+        << monitor.output();
   }
+  EXPECT_EQ(monitor.Terminate(), 0);
 }
 
 TEST(RealProcesses, RequestToolWithNobodyThereSaysWhatIsMissing) {

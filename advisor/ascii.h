@@ -1,0 +1,20 @@
+#pragma once
+
+namespace terra::advisor {
+
+// Characters as every locale has them: what is read must not depend on it.
+
+inline constexpr bool IsSpace(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+inline constexpr bool IsDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+inline constexpr char Lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+inline constexpr bool IsLetter(char c) {
+  return Lower(c) >= 'a' && Lower(c) <= 'z';
+}
+
+}  // namespace terra::advisor

@@ -50,9 +50,7 @@ void CheckReply(std::string_view provider, std::string_view body) {
 void CheckBatchResult(std::string_view line) {
   for (const std::string_view provider : {"openai", "anthropic", "gemini"}) {
     const auto format = terra::advisor::MakeWireFormat(provider);
-    const auto result = terra::advisor::ReadBatchResult(*format, line);
-    terra::fuzz::Require(result.ok() || !result.error().message.empty(),
-                         "what is no result says why");
+    terra::fuzz::RequireReason(terra::advisor::ReadBatchResult(*format, line));
   }
 }
 
@@ -74,10 +72,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       CheckRoute(text);
       break;
     case 3:
-      terra::ParsePoint(text);
+      terra::fuzz::RequireReason(terra::ParsePoint(text));
       break;
     case 4:
-      terra::advisor::ParseRecord(text);
+      terra::fuzz::RequireReason(terra::advisor::ParseRecord(text));
       break;
     case 9:
       CheckBatchResult(text);

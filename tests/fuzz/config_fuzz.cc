@@ -39,7 +39,9 @@ void CheckConfig(std::string_view text) {
     terra::fuzz::Require(*error.what() != '\0', "a refusal says why");
     return;
   }
-  if (program.bus.Complete()) program.bus.Channels();
+  const auto complete = program.bus.Complete();
+  terra::fuzz::RequireReason(complete);
+  if (complete) terra::fuzz::RequireReason(program.bus.Channels());
 }
 
 void CheckUrl(std::string_view text) {

@@ -23,12 +23,13 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       break;
     }
     case 2:
-      terra::DecodePgm(text, "input");
+      terra::fuzz::RequireReason(terra::DecodePgm(text, "input"));
       break;
     default:
       // Names of files that exist are none of an input's business.
       if (text.find('/') != std::string_view::npos) return 0;
-      terra::ParseRosMap(text, "/nowhere/map.yaml", /*own_legend=*/true);
+      terra::fuzz::RequireReason(terra::ParseRosMap(text, "/nowhere/map.yaml",
+                                                    /*own_legend=*/true));
   }
   return 0;
 }

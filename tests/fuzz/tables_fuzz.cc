@@ -69,7 +69,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       break;
     default:
       Save("cases.csv", text);
-      terra::ReadDataset(Folder().string());
+      terra::fuzz::RequireReason(terra::ReadDataset(Folder().string()));
   }
   return 0;
 }

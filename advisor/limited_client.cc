@@ -8,10 +8,10 @@
 namespace terra::advisor {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 double NowSeconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -42,9 +42,6 @@ LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
   LlmReply reply;
   reply.reason = PassGate(stop);
   if (reply.reason == NoAnswer::kNone) {
-    monitor_->Update([](CallFigures& figures) {
-      figures.busy = true;
-    });
     gate_.Started(NowSeconds());
     reply = inner_->Ask(request, stop);
     if (!reply.spend_usd && reply.came()) {
@@ -56,10 +53,11 @@ LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
   }
   const double now = NowSeconds();
   monitor_->Update([&](CallFigures& figures) {
-    figures.busy = false;
     figures.statistics.Add(reply);
     figures.spend_last_hour_usd = gate_.spend_last_hour(now);
-    figures.breaker_open = gate_.breaker_open(now);
+    figures.paused_until =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double>(gate_.pause_s(now)));
     if (!reply.came()) {
       figures.last_error = std::string(NoAnswerName(reply.reason)) +
                            (reply.error.empty() ? "" : ": ") + reply.error;

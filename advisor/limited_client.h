@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,8 +20,8 @@ enum class AtLimit {
 struct CallFigures {
   CallStatistics statistics;
   double spend_last_hour_usd = 0;
-  bool breaker_open = false;
-  bool busy = false;
+  /// Calls pause until then: the breaker is open.
+  std::chrono::steady_clock::time_point paused_until{};
   std::string last_error;  ///< Of the last call without an answer.
 };
 

@@ -164,7 +164,8 @@ BackendFigures LlmBackend::figures() const {
   const CallFigures calls = service_.monitor->figures();
   const CallStatistics& statistics = calls.statistics;
   BackendFigures figures;
-  if (calls.breaker_open) figures.state = "failing: breaker open";
+  if (Clock::now() < calls.paused_until)
+    figures.state = "failing: breaker open";
   figures.last_error = calls.last_error;
   std::int64_t skipped = 0;
   {

@@ -1,6 +1,7 @@
 #include "advisor/limited_client.h"
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "advisor/interruptible_wait.h"
@@ -26,21 +27,22 @@ LimitedClient::LimitedClient(std::unique_ptr<LlmClient> inner,
       at_limit_(at_limit),
       monitor_(std::move(monitor)) {}
 
-NoAnswer LimitedClient::PassGate(std::stop_token stop) {
+CallGate::Answer LimitedClient::PassGate(std::stop_token stop) {
   for (;;) {
     const CallGate::Answer answer = gate_.MayCall(NowSeconds());
     if (answer.reason == NoAnswer::kNone || at_limit_ == AtLimit::kRefuse) {
-      return answer.reason;
+      return answer;
     }
     if (!WaitUnlessStopped(answer.wait_s, stop)) {
-      return NoAnswer::kCancelled;
+      return {NoAnswer::kCancelled, 0};
     }
   }
 }
 
 LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
   LlmReply reply;
-  reply.reason = PassGate(stop);
+  const CallGate::Answer gate = PassGate(stop);
+  reply.reason = gate.reason;
   if (reply.reason == NoAnswer::kNone) {
     gate_.Started(NowSeconds());
     reply = inner_->Ask(request, stop);
@@ -48,8 +50,9 @@ LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
       reply.spend_usd = prices_.Spend(identity(), reply);
     }
     gate_.Ended(reply, NowSeconds());
-  } else {
-    reply.error = "own limit: " + std::string(NoAnswerName(reply.reason));
+  } else if (reply.reason != NoAnswer::kCancelled) {
+    reply.error = "own limit; the next call may go in " +
+                  std::to_string(std::lround(std::ceil(gate.wait_s))) + " s";
   }
   const double now = NowSeconds();
   monitor_->Update([&](CallFigures& figures) {
@@ -58,10 +61,6 @@ LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
     figures.paused_until =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(
                            std::chrono::duration<double>(gate_.pause_s(now)));
-    if (!reply.came()) {
-      figures.last_error = std::string(NoAnswerName(reply.reason)) +
-                           (reply.error.empty() ? "" : ": ") + reply.error;
-    }
   });
   return reply;
 }

@@ -22,7 +22,6 @@ struct CallFigures {
   double spend_last_hour_usd = 0;
   /// Calls pause until then: the breaker is open.
   std::chrono::steady_clock::time_point paused_until{};
-  std::string last_error;  ///< Of the last call without an answer.
 };
 
 /// Figures that another thread may read. Threads: all members.
@@ -54,8 +53,8 @@ class LimitedClient : public LlmClient {
   LlmReply Ask(const LlmRequest& request, std::stop_token stop) override;
 
  private:
-  /// Returns why the call may not go.
-  NoAnswer PassGate(std::stop_token stop);
+  /// Returns why the call may not go, and until when.
+  CallGate::Answer PassGate(std::stop_token stop);
 
   std::unique_ptr<LlmClient> inner_;
   CallGate gate_;

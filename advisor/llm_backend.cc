@@ -137,6 +137,7 @@ void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
   answer.form = outcome.form;
   answer.model =
       reply.model.empty() ? service_.client->identity().model : reply.model;
+  answer.simulated = service_.client->identity().endpoint_class == "loopback";
   answer.answer_text = reply.text;
   answer.tokens_in = reply.usage.tokens_in;
   answer.tokens_out = reply.usage.tokens_out;
@@ -166,7 +167,6 @@ BackendFigures LlmBackend::figures() const {
   BackendFigures figures;
   if (Clock::now() < calls.paused_until)
     figures.state = "failing: breaker open";
-  figures.last_error = calls.last_error;
   std::int64_t skipped = 0;
   {
     const std::lock_guard lock(mutex_);

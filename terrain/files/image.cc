@@ -42,6 +42,7 @@ Error Torn(const std::string& name, std::size_t bytes) {
 // Walks the chunks from IHDR to IEND. Checksums and pixels are the decoder's.
 Result<PngHeader> ReadPngHeader(std::string_view bytes,
                                 const std::string& name) {
+  if (!bytes.starts_with(kPngSignature)) return Torn(name, 0);
   PngHeader header;
   std::size_t at = kPngSignature.size();
   for (bool first = true;; first = false) {
@@ -123,7 +124,9 @@ std::int64_t TakePgmNumber(std::string_view bytes, std::size_t& at) {
 
 }  // namespace
 
-bool IsPng(std::string_view bytes) { return bytes.starts_with(kPngSignature); }
+bool IsPng(std::string_view bytes) {
+  return bytes.starts_with(kPngSignature);
+}
 
 Status CheckMapSize(std::int64_t width, std::int64_t height,
                     const std::string& name) {
@@ -186,8 +189,8 @@ Result<cv::Mat> DecodePgm(std::string_view bytes, const std::string& name) {
 Status WritePng(const cv::Mat& image, const std::string& path) {
   std::vector<unsigned char> bytes;
   cv::imencode(".png", image, bytes);
-  return WriteWholeFile(path, {reinterpret_cast<const char*>(bytes.data()),
-                               bytes.size()});
+  return WriteWholeFile(
+      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 ByteRaster ToRaster(const cv::Mat& image) {

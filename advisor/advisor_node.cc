@@ -40,7 +40,9 @@ advice_t ToMessage(const AdviceWorker::Job& job, const AdviceAnswer& answer) {
   message.anchor_index = job.anchor.index;
   message.anchor_x = job.anchor.cell.x;
   message.anchor_y = job.anchor.cell.y;
-  message.model = Limited(answer.model, bus::kMaxNameBytes);
+  // Nobody who reads a log may take it for a model's answer.
+  message.model = Limited((answer.simulated ? "SIMULATED " : "") + answer.model,
+                          bus::kMaxNameBytes);
   message.kind = static_cast<std::int8_t>(answer.kind);
   message.form = static_cast<std::int8_t>(answer.form);
   message.request_hash = answer.request_hash;

@@ -35,6 +35,8 @@ struct AdviceAnswer {
   AnswerForm form = AnswerForm::kNone;
   std::vector<Candidate> candidates;  ///< In the answer's order; kPropose only.
   std::string model;
+  /// A program on this machine stood in for the model: see ProviderOptions.
+  bool simulated = false;
   std::string request_hash;
   std::string answer_text;
   std::string error;
@@ -47,8 +49,7 @@ struct AdviceAnswer {
 
 /// What a backend tells of itself in its process's heartbeat.
 struct BackendFigures {
-  std::string state;       ///< Empty = nothing out of the ordinary.
-  std::string last_error;  ///< Of the last task without an answer; or empty.
+  std::string state;  ///< Empty = nothing out of the ordinary.
   std::vector<std::pair<std::string, std::int64_t>> counters;
 };
 

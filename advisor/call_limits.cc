@@ -56,8 +56,8 @@ std::optional<double> PriceTable::Spend(const LlmIdentity& identity,
 }
 
 CallGate::Answer CallGate::MayCall(double now_s) {
-  if (breaker_open(now_s)) {
-    return {NoAnswer::kBreakerOpen, closed_until_s_ - now_s};
+  if (const double pause = pause_s(now_s); pause > 0) {
+    return {NoAnswer::kBreakerOpen, pause};
   }
   while (!started_.empty() && started_.front() <= now_s - kMinute) {
     started_.pop_front();
@@ -95,7 +95,7 @@ void CallGate::Ended(const LlmReply& reply, double now_s) {
     ++failures_;
     if (limits_.breaker_failures > 0 && failures_ >= limits_.breaker_failures) {
       const int more = std::min(failures_ - limits_.breaker_failures, 30);
-      closed_until_s_ =
+      paused_until_s_ =
           now_s + std::min(limits_.breaker_first_wait_s * std::exp2(more),
                            limits_.breaker_max_wait_s);
     }

@@ -61,7 +61,10 @@ class CallGate {
   /// A call ended. Cancelled ones count as neither failure nor success.
   void Ended(const LlmReply& reply, double now_s);
 
-  bool breaker_open(double now_s) const { return now_s < closed_until_s_; }
+  /// How long the breaker stays open; 0 = it is closed.
+  double pause_s(double now_s) const {
+    return now_s < paused_until_s_ ? paused_until_s_ - now_s : 0;
+  }
   double spend_last_hour(double now_s);
   int failures_in_succession() const { return failures_; }
 
@@ -75,7 +78,7 @@ class CallGate {
   std::deque<double> started_;  ///< At most calls_per_minute of them.
   std::deque<Spent> spent_;     ///< Of the last hour, a bucket per minute.
   int failures_ = 0;
-  double closed_until_s_ = 0;
+  double paused_until_s_ = 0;
 };
 
 /// What STATUS tells of the calls.

@@ -1,6 +1,7 @@
 #include "advisor/limited_client.h"
 
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "advisor/interruptible_wait.h"
@@ -8,10 +9,10 @@
 namespace terra::advisor {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 double NowSeconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -26,44 +27,40 @@ LimitedClient::LimitedClient(std::unique_ptr<LlmClient> inner,
       at_limit_(at_limit),
       monitor_(std::move(monitor)) {}
 
-NoAnswer LimitedClient::PassGate(std::stop_token stop) {
+CallGate::Answer LimitedClient::PassGate(std::stop_token stop) {
   for (;;) {
     const CallGate::Answer answer = gate_.MayCall(NowSeconds());
     if (answer.reason == NoAnswer::kNone || at_limit_ == AtLimit::kRefuse) {
-      return answer.reason;
+      return answer;
     }
     if (!WaitUnlessStopped(answer.wait_s, stop)) {
-      return NoAnswer::kCancelled;
+      return {NoAnswer::kCancelled, 0};
     }
   }
 }
 
 LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
   LlmReply reply;
-  reply.reason = PassGate(stop);
+  const CallGate::Answer gate = PassGate(stop);
+  reply.reason = gate.reason;
   if (reply.reason == NoAnswer::kNone) {
-    monitor_->Update([](CallFigures& figures) {
-      figures.busy = true;
-    });
     gate_.Started(NowSeconds());
     reply = inner_->Ask(request, stop);
     if (!reply.spend_usd && reply.came()) {
       reply.spend_usd = prices_.Spend(identity(), reply);
     }
     gate_.Ended(reply, NowSeconds());
-  } else {
-    reply.error = "own limit: " + std::string(NoAnswerName(reply.reason));
+  } else if (reply.reason != NoAnswer::kCancelled) {
+    reply.error = "own limit; the next call may go in " +
+                  std::to_string(std::lround(std::ceil(gate.wait_s))) + " s";
   }
   const double now = NowSeconds();
   monitor_->Update([&](CallFigures& figures) {
-    figures.busy = false;
     figures.statistics.Add(reply);
     figures.spend_last_hour_usd = gate_.spend_last_hour(now);
-    figures.breaker_open = gate_.breaker_open(now);
-    if (!reply.came()) {
-      figures.last_error = std::string(NoAnswerName(reply.reason)) +
-                           (reply.error.empty() ? "" : ": ") + reply.error;
-    }
+    figures.paused_until =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double>(gate_.pause_s(now)));
   });
   return reply;
 }

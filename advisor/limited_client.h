@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,9 +20,8 @@ enum class AtLimit {
 struct CallFigures {
   CallStatistics statistics;
   double spend_last_hour_usd = 0;
-  bool breaker_open = false;
-  bool busy = false;
-  std::string last_error;  ///< Of the last call without an answer.
+  /// Calls pause until then: the breaker is open.
+  std::chrono::steady_clock::time_point paused_until{};
 };
 
 /// Figures that another thread may read. Threads: all members.
@@ -53,8 +53,8 @@ class LimitedClient : public LlmClient {
   LlmReply Ask(const LlmRequest& request, std::stop_token stop) override;
 
  private:
-  /// Returns why the call may not go.
-  NoAnswer PassGate(std::stop_token stop);
+  /// Returns why the call may not go, and until when.
+  CallGate::Answer PassGate(std::stop_token stop);
 
   std::unique_ptr<LlmClient> inner_;
   CallGate gate_;

@@ -137,6 +137,7 @@ void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
   answer.form = outcome.form;
   answer.model =
       reply.model.empty() ? service_.client->identity().model : reply.model;
+  answer.simulated = service_.client->identity().endpoint_class == "loopback";
   answer.answer_text = reply.text;
   answer.tokens_in = reply.usage.tokens_in;
   answer.tokens_out = reply.usage.tokens_out;
@@ -164,8 +165,8 @@ BackendFigures LlmBackend::figures() const {
   const CallFigures calls = service_.monitor->figures();
   const CallStatistics& statistics = calls.statistics;
   BackendFigures figures;
-  if (calls.breaker_open) figures.state = "failing: breaker open";
-  figures.last_error = calls.last_error;
+  if (Clock::now() < calls.paused_until)
+    figures.state = "failing: breaker open";
   std::int64_t skipped = 0;
   {
     const std::lock_guard lock(mutex_);

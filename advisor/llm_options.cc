@@ -1,6 +1,5 @@
 #include "advisor/llm_options.h"
 
-#include <map>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -105,20 +104,25 @@ void AddPromptOptions(CLI::App& app, MethodOptions& method,
                       std::string& references) {
   const std::string group = "Prompt";
   PromptSwitches& prompt = method.prompt;
-  app.add_option("--method", method.method, "advisor, direct or llm-astar")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Method>{{"advisor", Method::kAdvisor},
-                                        {"direct", Method::kDirect},
-                                        {"llm-astar", Method::kLlmAstar}}))
+  app.add_option_function<std::string>(
+         "--method",
+         [&method](const std::string& name) {
+           method.method = FindMethod(name).value();
+         },
+         "advisor, direct or llm-astar")
+      ->check(CLI::IsMember({"advisor", "direct", "llm-astar"}))
       ->default_str("advisor")
       ->group(group);
   app.add_flag("--overlay,!--no-overlay", prompt.overlay,
                "Show the picture with the baseline (default)")
+      ->default_str("true")
       ->group(group);
   app.add_flag("--route-text,!--no-route-text", prompt.route_text,
                "Describe the baseline's points and cost (default)")
+      ->default_str("true")
       ->group(group);
   app.add_flag("--rea,!--no-rea", prompt.rea, "Show a reference pair (default)")
+      ->default_str("true")
       ->group(group);
   app.add_option_function<std::string>(
          "--picture",
@@ -185,9 +189,11 @@ void AddLlmOptions(CLI::App& app, LlmBackendOptions& options) {
       ->group(group);
   app.add_flag("--images,!--no-images", service.record_images,
                "Keep the pictures beside a recording (default)")
+      ->default_str("true")
       ->group(group);
   app.add_option("--price", service.prices,
                  "MODEL=INPUT:OUTPUT, dollars per million tokens; repeatable")
+      ->default_str("")
       ->group(group);
 }
 

@@ -33,6 +33,7 @@ Result<LlmService> MakeLlmService(const LlmServiceOptions& options,
                                   AtLimit at_limit) {
   PriceTable prices;
   for (const std::string& price : options.prices) {
+    if (price.empty()) continue;  // So --print-config writes "no price".
     if (const auto added = prices.Add(price); !added) return added.error();
   }
   auto client = MakeClient(options);

@@ -1,5 +1,6 @@
 #include "advisor/provider_client.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
@@ -73,6 +74,18 @@ std::string Remedy(const TryOutcome& outcome, const std::string& url,
                  ? "; does " + url + " speak this backend's form?"
                  : "";
   }
+}
+
+/// What comes from outside is printed on terminals and in logs: control
+/// characters must not steer those.
+std::string OnOneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+      },
+      ' ');
+  return text;
 }
 
 double Jitter() {
@@ -193,15 +206,15 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
     outcome.error = format_->ReadError(http.body);
     reply.error = "HTTP " + std::to_string(http.status) +
                   (outcome.error.message.empty() ? "" : ": ") +
-                  WithoutKey(outcome.error.message);
+                  OnOneLine(WithoutKey(outcome.error.message));
     return outcome;
   }
   WireReply wire = format_->ReadReply(http.body);
   outcome.reply_failed = wire.transient;
   reply.status = wire.status;
   reply.text = WithoutKey(std::move(wire.text));
-  reply.error = WithoutKey(std::move(wire.error));
-  reply.model = WithoutKey(std::move(wire.model));
+  reply.error = OnOneLine(WithoutKey(std::move(wire.error)));
+  reply.model = OnOneLine(WithoutKey(std::move(wire.model)));
   reply.response_id = WithoutKey(std::move(wire.response_id));
   reply.usage = wire.usage;
   reply.body = BodyWithoutKey(std::move(http.body));

@@ -1,11 +1,14 @@
 #include "advisor/route_moves.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <numbers>
 
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
+#include "terrain/segment_steps.h"
 
 namespace terra::advisor {
 namespace {
@@ -47,25 +50,25 @@ double SegmentCostBelow(const TerrainMap& map, Cell from, Cell to,
                         double limit) {
   if (!map.Passable(from)) return kImpassable;
   const bool cut_corners = map.cost_model().corner_cutting;
+  const std::array<double, 256>& cost_of = map.costs().cost;
   const double min_cost = map.costs().min_cost();
+  const std::uint8_t* cell = &map.classes()(from.y, from.x);
+  SegmentSteps steps(from, to, map.width());
   // A segment has as many diagonal steps as a path can have, so the bound is
-  // its cost if every cell were of the cheapest terrain.
+  // its cost if every cell were of the cheapest terrain. Blocked cells cost
+  // more than any limit.
   double cost = LowerBound(map, from, to);
-  for (SegmentCells cells(from, to); cost < limit;) {
-    if (cells.done()) return cost;
-    const Cell last = cells.cell();
-    cells.Next();
-    const Cell next = cells.cell();
-    if (!map.Passable(next)) return kImpassable;
-    const bool diagonal = last.x != next.x && last.y != next.y;
+  for (int k = 0; k < steps.count() && cost < limit; ++k) {
+    const bool diagonal = steps.NextIsDiagonal();
     if (diagonal && !cut_corners &&
-        (!map.Passable({last.x, next.y}) || !map.Passable({next.x, last.y}))) {
+        (cell[steps.along_longer()] == 0 || cell[steps.along_shorter()] == 0)) {
       return kImpassable;
     }
-    const double more = map.Cost(next) - min_cost;
+    cell += steps.along_longer() + (diagonal ? steps.along_shorter() : 0);
+    const double more = cost_of[*cell] - min_cost;
     cost += diagonal ? std::numbers::sqrt2 * more : more;
   }
-  return kImpassable;
+  return cost < limit ? cost : kImpassable;
 }
 
 Route Densify(const Route& route, int spacing) {

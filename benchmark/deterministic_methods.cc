@@ -7,7 +7,7 @@
 #include "benchmark/method.h"
 #include "benchmark/single_search.h"
 #include "benchmark/stopwatch.h"
-#include "terrain/native_search.h"
+#include "planner/optimum.h"
 #include "terrain/segment.h"
 
 namespace terra::benchmark {
@@ -66,8 +66,8 @@ const std::vector<NamedPlanner>& Refiners() {
 }
 
 Route OracleRoute(const MethodInput& input) {
-  const SearchResult found = NativeSearch(input.map, input.dataset_case.start,
-                                          input.dataset_case.goal);
+  const SearchResult found = planner::FindOptimum(
+      input.map, input.dataset_case.start, input.dataset_case.goal);
   return found.found() ? CornersOf(found.cells) : Route{};
 }
 

@@ -9,6 +9,7 @@
 #include "bus/heartbeat.h"
 #include "bus/lcm_url.h"
 #include "bus/log.h"
+#include "bus/usage_message.h"
 
 namespace terra::bus {
 namespace {
@@ -95,6 +96,7 @@ int RunProcess(const ProcessSpec& spec, int argc, char** argv) {
   SetLogName(spec.program);
   CLI::App app(spec.description, spec.program);
   app.option_defaults()->always_capture_default();
+  app.failure_message(UsageMessage);
   BusOptions options;
   std::string name = spec.name;
   bool print_config = false;

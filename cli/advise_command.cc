@@ -34,6 +34,7 @@ struct Advised {
   Route baseline;
   double baseline_cost = kImpassable;
   Code code = Code::kNotChecked;
+  AdviceAnswer answer;
   Route candidate;  // Empty when the advisor proposed none.
   double candidate_cost = kImpassable;
   double seconds = 0;  // Of the advisor alone.
@@ -71,26 +72,26 @@ Result<Advised> Advise(const AdviseArguments& arguments,
               << " (README.txt there); waiting for its answer.txt\n";
   }
   const auto begin = std::chrono::steady_clock::now();
-  const AdviceAnswer answer =
+  advised.answer =
       (*backend)->Advise({map, MapId(map), 0, problem.start, problem.goal,
                           advised.baseline, advised.baseline_cost},
                          {});
   advised.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
           .count();
-  switch (answer.kind) {
+  switch (advised.answer.kind) {
     case AnswerKind::kRetain:
       advised.code = Code::kRetained;
       break;
     case AnswerKind::kPropose:
-      JudgeCandidates(answer, map, problem, advised);
+      JudgeCandidates(advised.answer, map, problem, advised);
       break;
     case AnswerKind::kMalformed:
       advised.code = Code::kParseError;
       break;
     case AnswerKind::kFailed:
       return Error{ErrorCode::kUnavailable,
-                   "the advisor gave no answer: " + answer.error};
+                   "the advisor gave no answer: " + advised.answer.error};
   }
   return advised;
 }
@@ -107,11 +108,41 @@ void PrintJson(const Advised& advised) {
       {"deployed", DeployedRoute(advised)},
       {"waypoints", JsonRoute(advised.candidate)},
       {"baseline", JsonRoute(advised.baseline)},
+      {"model", advised.answer.model},
+      {"simulated", advised.answer.simulated},
+      {"answer", advised.answer.answer_text},
+      {"error", advised.answer.error},
       {"seconds", advised.seconds}};
-  std::cout << json.dump() << "\n";
+  std::cout << json.dump(-1, ' ', false,
+                         nlohmann::ordered_json::error_handler_t::replace)
+            << "\n";
+}
+
+// On one line, without what could steer a terminal.
+std::string Shown(const std::string& text) {
+  constexpr std::size_t kMost = 400;
+  const bool cut = text.size() > kMost;
+  return nlohmann::json(text.substr(0, kMost))
+             .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
+         (cut ? " ..." : "");
+}
+
+// What a model said, where there is one.
+void PrintAnswer(const AdviceAnswer& answer) {
+  if (answer.simulated) {
+    std::cout << "SIMULATED  by a program on this machine; --real-model says "
+                 "that it runs a model\n";
+  }
+  if (!answer.model.empty()) {
+    std::cout << "model      " << answer.model << ", " << answer.tokens_in
+              << " tokens in, " << answer.tokens_out << " out\n"
+              << "answer     " << Shown(answer.answer_text) << "\n";
+  }
+  if (!answer.error.empty()) std::cout << "reason     " << answer.error << "\n";
 }
 
 void PrintText(const Advised& advised) {
+  PrintAnswer(advised.answer);
   std::cout << "verdict    " << verifier::CodeName(advised.code) << "\n"
             << "deployed   " << DeployedRoute(advised) << "\n"
             << "baseline   cost " << FormatNumber(advised.baseline_cost) << ", "

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bus/usage_message.h"
 #include "cli/commands.h"
 
 namespace {
@@ -33,6 +34,7 @@ int Run(int argc, char** argv) {
   int exit_code = 0;
   app.set_version_flag("--version", "terra " TERRA_VERSION);
   app.require_subcommand(1);
+  app.failure_message(terra::bus::UsageMessage);
   app.footer(
       "Maps: 8-bit PNG of terrain ids, 24-bit PNG in legend colours, MovingAI "
       ".map,\nROS map_server .yaml. Cells are X,Y from the top left corner.\n"

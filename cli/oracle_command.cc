@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/found_route.h"
 #include "cli/output.h"
-#include "terrain/native_search.h"
+#include "planner/optimum.h"
 #include "terrain/segment.h"
 
 namespace terra::cli {
@@ -22,7 +22,8 @@ int RunOracle(const OracleArguments& arguments) {
   const Result<TerrainMap> map = LoadMap(problem.map);
   if (!map.ok()) return Fail(map.error());
   const auto begin = std::chrono::steady_clock::now();
-  const SearchResult found = NativeSearch(*map, problem.start, problem.goal);
+  const SearchResult found =
+      planner::FindOptimum(*map, problem.start, problem.goal);
   const std::chrono::duration<double> took =
       std::chrono::steady_clock::now() - begin;
   Route corners = found.found() ? CornersOf(found.cells) : Route{};

@@ -1,5 +1,6 @@
 #include "logger/audit_session.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -109,12 +110,26 @@ void SessionAudit::BeginUnasked(const Decisions::value_type& verdict) {
 // Returns whether the last decision before this one is known, and reports a gap
 // if not.
 bool SessionAudit::Follows(std::int64_t decision) {
-  if (last_ == 0 || decision - 1 == last_) return true;
+  if (last_ == 0) return !BeganInThisLog(decision);
+  if (decision - 1 == last_) return true;
   if (at_begin_) return true;  // Verdicts from before the log.
   Fail(Finding::Kind::kGap, decision,
        "decisions after " + std::to_string(last_) + " to " +
            std::to_string(decision - 1) + " are not in the log");
   return false;
+}
+
+// A gate after another one of this log began in this log too, and said so.
+bool SessionAudit::BeganInThisLog(std::int64_t decision) {
+  const std::int64_t index = decisions_.begin()->second.index;
+  const bool first =
+      std::ranges::none_of(contents_.decisions, [index](const auto& session) {
+        return session.second.begin()->second.index < index;
+      });
+  if (first) return false;
+  Fail(Finding::Kind::kGap, decision,
+       "decisions before " + std::to_string(decision) + " are not in the log");
+  return true;
 }
 
 void SessionAudit::TakeFirst(const Logged<Decided>& logged) {

@@ -28,6 +28,7 @@ class SessionAudit {
   void Take(Decisions::const_iterator at);
   void TakeState(Decisions::const_iterator at);
   void BeginUnasked(const Decisions::value_type& verdict);
+  bool BeganInThisLog(std::int64_t decision);
   bool Follows(std::int64_t decision);
   void TakeFirst(const Logged<Decided>& logged);
   void BeginFrom(const terra_msg::deployed_t& deployed, std::int64_t index);

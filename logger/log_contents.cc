@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -51,7 +52,32 @@ LogContents LogContents::Load(LogReader& reader, SealChecker& seals) {
     ++contents.events;
   }
   seals.Finish(reader.size());
+  contents.Compare();
   return contents;
+}
+
+// Finds what shows only when all is known.
+void LogContents::Compare() {
+  for (std::string& fault : maps.Faults()) {
+    conflicts.push_back({0, std::move(fault)});
+  }
+  for (const auto& [name, said] : baselines) CompareWithRequest(said);
+  for (const auto& said : other_baselines) CompareWithRequest(said);
+}
+
+void LogContents::CompareWithRequest(
+    const Logged<terra_msg::baseline_t>& said) {
+  const auto asked = requests.find(said.message.request_id);
+  if (asked == requests.end()) return;
+  const terra_msg::plan_request_t& request = asked->second.message;
+  const terra_msg::baseline_t& baseline = said.message;
+  if (std::tie(request.start_x, request.start_y, request.goal_x,
+               request.goal_y) != std::tie(baseline.start_x, baseline.start_y,
+                                           baseline.goal_x, baseline.goal_y)) {
+    conflicts.push_back({said.index, At("BASELINE", said.index) +
+                                         " is not for the request of " +
+                                         At("its id", asked->second.index)});
+  }
 }
 
 void LogContents::Take(const LogEvent& event, std::int64_t index) {
@@ -119,7 +145,9 @@ void LogContents::Place(const Logged<terra_msg::map_header_t>& said) {
 }
 
 void LogContents::Place(const Logged<terra_msg::map_tile_t>& said) {
-  maps.Take(said.message);
+  if (maps.Take(said.message)) return;
+  conflicts.push_back(
+      {said.index, At("MAP_TILE", said.index) + " has sizes that do not fit"});
 }
 
 void LogContents::Place(const Logged<terra_msg::plan_request_t>& said) {
@@ -171,11 +199,19 @@ void LogContents::Place(const Logged<terra_msg::pose_t>& said) {
   poses[said.message.deployed_session].push_back(said);
 }
 
+void LogContents::CheckNumber(std::int64_t decision, std::int64_t index) {
+  if (decision >= 1) return;
+  conflicts.push_back(
+      {index, At("a decision", index) + " has no number", true});
+}
+
 void LogContents::Place(const Logged<terra_msg::verdict_t>& said) {
+  CheckNumber(said.message.decision, said.index);
   Keep(decisions[said.message.session], said.message.decision, said, "VERDICT");
 }
 
 void LogContents::Place(const Logged<terra_msg::deployed_t>& said) {
+  CheckNumber(said.message.decision, said.index);
   first_deployed = std::min(first_deployed, said.index);
   Keep(decisions[said.message.session], said.message.decision, said,
        "DEPLOYED");

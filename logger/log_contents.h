@@ -101,6 +101,9 @@ class LogContents {
 
  private:
   void Take(const LogEvent& event, std::int64_t index);
+  void CheckNumber(std::int64_t decision, std::int64_t index);
+  void Compare();
+  void CompareWithRequest(const Logged<terra_msg::baseline_t>& said);
   template <typename T>
   void TakeAs(const LogEvent& event, std::int64_t index);
   template <typename Key, typename T, typename Other>

@@ -20,11 +20,11 @@ bool LoggedMaps::Take(const terra_msg::map_header_t& header) {
   return true;
 }
 
-void LoggedMaps::Take(const terra_msg::map_tile_t& tiles) {
+bool LoggedMaps::Take(const terra_msg::map_tile_t& tiles) {
   std::span<const std::uint8_t> data(tiles.tile_data);
   for (std::size_t i = 0; i < tiles.tile_index.size(); ++i) {
     const std::int32_t size = tiles.tile_size[i];
-    if (size < 0 || static_cast<std::size_t>(size) > data.size()) return;
+    if (size < 0 || static_cast<std::size_t>(size) > data.size()) return false;
     const auto bytes = data.first(static_cast<std::size_t>(size));
     data = data.subspan(bytes.size());
     std::vector<Frame>& known =
@@ -35,6 +35,7 @@ void LoggedMaps::Take(const terra_msg::map_tile_t& tiles) {
       known.push_back(std::move(frame));
     }
   }
+  return data.empty();
 }
 
 bus::MapPtr LoggedMaps::Find(std::int64_t map_id) {
@@ -64,6 +65,37 @@ bus::MapPtr LoggedMaps::Make(std::int64_t map_id) const {
   if (!terrain) return nullptr;
   return std::make_shared<const bus::MapInForce>(
       bus::MapInForce{*std::move(terrain), map_id});
+}
+
+std::vector<std::string> LoggedMaps::Faults() const {
+  std::vector<std::string> faults;
+  for (const auto& [name, frames] : frames_) {
+    if (faults.size() >= kMaxFaults) break;
+    const std::string tile = "tile " + std::to_string(name.first);
+    const bus::MapOutline* outline = MapThatLists(name);
+    if (outline == nullptr) {
+      faults.push_back(tile + " is of no map that the log holds");
+      continue;
+    }
+    const std::size_t cells = outline->grid.rect(name.first).cells();
+    const bool all_good = std::ranges::all_of(frames, [&](const Frame& frame) {
+      const auto ids = bus::UnpackTile(frame, cells);
+      return ids && TileDigest(*ids) == name.second;
+    });
+    if (!all_good) faults.push_back(tile + " is not what it says");
+  }
+  return faults;
+}
+
+const bus::MapOutline* LoggedMaps::MapThatLists(TileName name) const {
+  for (const auto& [map_id, outline] : outlines_) {
+    if (name.first >= 0 && name.first < outline.grid.count() &&
+        outline.tile_digests[static_cast<std::size_t>(name.first)] ==
+            name.second) {
+      return &outline;
+    }
+  }
+  return nullptr;
 }
 
 std::optional<std::vector<std::uint8_t>> LoggedMaps::FindTile(

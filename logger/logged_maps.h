@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,10 +22,16 @@ class LoggedMaps {
  public:
   static constexpr std::size_t kMaxMade = 4;
   static constexpr std::size_t kMaxVariants = 4;
+  static constexpr std::size_t kMaxFaults = 100;
 
   /// Returns whether the header is what its own map_id says.
   bool Take(const terra_msg::map_header_t& header);
-  void Take(const terra_msg::map_tile_t& tiles);
+  /// Returns whether the message's sizes fit its bytes.
+  bool Take(const terra_msg::map_tile_t& tiles);
+
+  /// Says which tiles are of no map, or not what they claim. To be asked when
+  /// all is taken; at most kMaxFaults.
+  std::vector<std::string> Faults() const;
 
   /// Returns a map whose every tile is in the log as its header lists it; null
   /// when something is missing.
@@ -41,6 +48,7 @@ class LoggedMaps {
   bus::MapPtr Make(std::int64_t map_id) const;
   std::optional<std::vector<std::uint8_t>> FindTile(TileName name,
                                                     std::size_t cells) const;
+  const bus::MapOutline* MapThatLists(TileName name) const;
 
   std::map<std::int64_t, bus::MapOutline> outlines_;
   std::vector<std::int64_t> sequence_;

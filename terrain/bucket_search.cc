@@ -63,75 +63,90 @@ void BucketSearch<Keys>::Prepare(std::size_t num_cells) {
 }
 
 template <typename Keys>
+struct BucketSearch<Keys>::Task {
+  const Keys& keys;
+  const GridSteps grid;
+  const OctileBound<Keys> to_goal;
+  const Cell goal;
+  Key bound;  // Falls to the key of the best path to the goal.
+  const bool bounded_by_keys;
+  SearchAttempt attempt;
+};
+
+template <typename Keys>
+void BucketSearch<Keys>::Push(std::size_t index, Key total,
+                              const Entry& entry) {
+  labels_[index] = Label{entry.key, search_};
+  queue_.Push(total, entry);
+}
+
+// Labels the neighbours of a cell to which it leads at a lower key.
+template <typename Keys>
+void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
+                                std::size_t index) {
+  ++task.attempt.expanded;
+  const StepSets& sets =
+      task.grid.InUniformBlock(index) ? kNaturalSteps : kAllSteps;
+  for (unsigned steps = sets[entry.arrival()]; steps != 0; steps &= steps - 1) {
+    const auto d = static_cast<std::size_t>(std::countr_zero(steps));
+    const std::size_t next = task.grid.Neighbour(index, d);
+    const std::uint16_t code = task.grid.Code(next);
+    if (code == 0 || !task.grid.MayPassCorner(index, d)) {
+      continue;
+    }
+    const Key key = entry.key + (d % 2 == 0 ? task.keys.Straight(code)
+                                            : task.keys.Diagonal(code));
+    if (key >= KeyOf(next)) {
+      continue;
+    }
+    const Cell cell{entry.x() + kSteps[d].x, entry.y() + kSteps[d].y};
+    const Key total = key + task.to_goal(cell.x, cell.y);
+    if (total >= task.bound) {
+      task.attempt.beyond_keys = task.bounded_by_keys;
+      continue;
+    }
+    Push(next, total, Entry(key, cell.x, cell.y, d));
+    if (cell == task.goal) {
+      task.attempt.found = true;
+      task.bound = key;
+    }
+  }
+}
+
+template <typename Keys>
 SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
                                       Cell start, Cell goal, Key bound) {
   Prepare(map.cost_grid().size());
-  SearchAttempt attempt;
-  const GridSteps grid(map);
-  const OctileBound<Keys> to_goal(keys, goal);
-  const auto key_of = [this](std::size_t index) {
-    return labels_[index].search == search_ ? labels_[index].key : Keys::kNone;
-  };
-  const auto push = [&](std::size_t index, Key key, Key total, int x, int y,
-                        std::size_t arrival) {
-    labels_[index] = Label{key, search_};
-    queue_.Push(total, Entry(key, x, y, arrival));
-  };
-
-  const Key least = to_goal(start.x, start.y);
-  const bool bounded_by_keys = bound == Keys::kLimit;
+  Task task{keys, GridSteps(map), OctileBound<Keys>(keys, goal),
+            goal, bound,          bound == Keys::kLimit,
+            {}};
+  SearchAttempt& attempt = task.attempt;
+  const Key least = task.to_goal(start.x, start.y);
   if (least >= bound) {
-    attempt.beyond_keys = bounded_by_keys;
+    attempt.beyond_keys = task.bounded_by_keys;
     return attempt;
   }
   // A quarter of the shortest step: wide enough to have few empty buckets,
   // narrow enough that few cells are expanded too early.
   queue_.Reset(least, keys.min_straight() / 4, 2 * keys.max_diagonal());
-  push(map.cost_grid().Index(start), Key{}, least, start.x, start.y,
-       kNoArrival);
-  while (!queue_.empty() && queue_.floor() < bound) {
+  Push(map.cost_grid().Index(start), least,
+       Entry(Key{}, start.x, start.y, kNoArrival));
+  while (!queue_.empty() && queue_.floor() < task.bound) {
     const Entry entry = queue_.Pop();
-    const int x = entry.x();
-    const int y = entry.y();
-    const std::size_t index = map.cost_grid().Index(Cell{x, y});
+    const Cell cell{entry.x(), entry.y()};
+    const std::size_t index = map.cost_grid().Index(cell);
     const bool improved_since = labels_[index].key != entry.key;
-    if (improved_since ||
-        (attempt.found && entry.key + to_goal(x, y) >= bound)) {
-      continue;
-    }
-    ++attempt.expanded;
-    const StepSets& sets =
-        grid.InUniformBlock(index) ? kNaturalSteps : kAllSteps;
-    for (unsigned steps = sets[entry.arrival()]; steps != 0;
-         steps &= steps - 1) {
-      const auto d = static_cast<std::size_t>(std::countr_zero(steps));
-      const std::size_t next = grid.Neighbour(index, d);
-      const std::uint16_t code = grid.Code(next);
-      if (code == 0 || !grid.MayPassCorner(index, d)) {
-        continue;
-      }
-      const Key key =
-          entry.key + (d % 2 == 0 ? keys.Straight(code) : keys.Diagonal(code));
-      if (key >= key_of(next)) {
-        continue;
-      }
-      const int next_x = x + kSteps[d].x;
-      const int next_y = y + kSteps[d].y;
-      const Key total = key + to_goal(next_x, next_y);
-      if (total >= bound) {
-        attempt.beyond_keys = bounded_by_keys;
-        continue;
-      }
-      push(next, key, total, next_x, next_y, d);
-      if (next_x == goal.x && next_y == goal.y) {
-        attempt.found = true;
-        bound = key;
-      }
+    const bool useless =
+        attempt.found && entry.key + task.to_goal(cell.x, cell.y) >= task.bound;
+    if (!improved_since && !useless) {
+      Expand(task, entry, index);
     }
   }
   if (attempt.found) {
     attempt.beyond_keys = false;
-    attempt.cells = ExtractPath(map, keys, start, goal, key_of);
+    attempt.cells = ExtractPath(map, keys, start, goal, [this](std::size_t i) {
+      return KeyOf(i);
+    });
   }
   return attempt;
 }

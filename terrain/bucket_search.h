@@ -53,7 +53,14 @@ class BucketSearch {
     std::uint32_t packed;
   };
 
+  struct Task;
+
   void Prepare(std::size_t num_cells);
+  void Push(std::size_t index, Key total, const Entry& entry);
+  void Expand(Task& task, const Entry& entry, std::size_t index);
+  Key KeyOf(std::size_t index) const {
+    return labels_[index].search == search_ ? labels_[index].key : Keys::kNone;
+  }
 
   std::vector<Label> labels_;
   std::uint32_t search_ = 0;

@@ -52,7 +52,7 @@ bool PreferBuckets(const Query& query) {
   if (query.options.instructions != InstructionSet::kPortable) {
     return false;
   }
-  constexpr double kNear = 1.5;
+  constexpr double kNear = 1.35;
   const double octile = OctileBound<DoubleKeys>(
       DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
   return query.options.upper_bound == kImpassable ||

@@ -1,12 +1,10 @@
 #include "terrain/route_cost.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <numbers>
-#include <utility>
 
 #include "terrain/require.h"
 #include "terrain/segment.h"
+#include "terrain/segment_steps.h"
 
 namespace terra {
 namespace {
@@ -94,37 +92,25 @@ class Walker {
 
   // The common case, fast: adds a segment that has no fault. Returns false, and
   // adds nothing, when it may have one. Pre: `from` inside and passable.
-  //
-  // Visits the cells of SegmentCells, which stay between the ends: a step along
-  // the longer side each time, and along the shorter one when twice the error
-  // is at most the longer side.
   bool SumSegment(Cell from, Cell to) {
-    const std::int64_t steps = ChebyshevDistance(from, to);
-    if (!map_.Contains(to) || steps > max_steps_ - walk_.steps) {
+    const std::int64_t count = ChebyshevDistance(from, to);
+    if (!map_.Contains(to) || count > max_steps_ - walk_.steps) {
       return false;
     }
-    const int dx = std::abs(to.x - from.x);
-    const int dy = std::abs(to.y - from.y);
-    std::ptrdiff_t along_longer = to.x < from.x ? -1 : 1;
-    std::ptrdiff_t along_shorter = to.y < from.y ? -map_.width() : map_.width();
-    if (dx < dy) {
-      std::swap(along_longer, along_shorter);
-    }
-    const int longer = std::max(dx, dy);
-    const int shorter = std::min(dx, dy);
+    SegmentSteps steps(from, to, map_.width());
     const bool corner_cutting = map_.cost_model().corner_cutting;
     const std::uint8_t* cell = &map_.classes()(from.y, from.x);
-    int error = longer - shorter;
     bool blocked = false;
     Sum straight{};
     Sum diagonal{};
-    for (int k = 0; k < longer; ++k) {
-      const bool both = 2 * error <= longer;
+    for (int k = 0; k < steps.count(); ++k) {
+      const bool both = steps.NextIsDiagonal();
       if (!corner_cutting && both) {
-        blocked |= cell[along_longer] == 0 || cell[along_shorter] == 0;
+        blocked |=
+            cell[steps.along_longer()] == 0 || cell[steps.along_shorter()] == 0;
       }
-      error += both ? longer - shorter : -shorter;
-      cell += both ? along_longer + along_shorter : along_longer;
+      cell += both ? steps.along_longer() + steps.along_shorter()
+                   : steps.along_longer();
       blocked |= *cell == 0;
       const Sum entered = costs_.Of(*cell);
       straight += both ? Sum{} : entered;
@@ -135,7 +121,7 @@ class Walker {
     }
     straight_ += straight;
     diagonal_ += diagonal;
-    walk_.steps += steps;
+    walk_.steps += count;
     return true;
   }
 

@@ -22,20 +22,23 @@ inline constexpr double kAboveRounding = 1 + 1e-9;
 /// and b (sums over its straight and its diagonal steps). Its key is the
 /// integer a q + b p, where p/q is a convergent of sqrt 2. Keys order paths
 /// exactly as their costs do, equal ones included, as long as they are below
-/// kLimit = p q:
+/// p q:
 ///   there b < q, so two keys differ in b by db with |db| < q. The error of
 ///   replacing q sqrt 2 by p is |db| |q sqrt 2 - p| < |db| / (2 q) < 1/2, so
 ///   an integer difference of keys of 1 or more has the sign of the costs'
 ///   difference; and a difference of 0 needs db = 0, p and q having no common
 ///   divisor, and then the costs are equal.
+/// Keys end earlier where sums of two would not fit the signed type of the same
+/// size, which vectors of keys have.
 /// Source: continued fraction of sqrt 2 (Pell numbers).
 template <typename KeyType, KeyType kQ, KeyType kP>
 class IntegerKeys {
  public:
   using Key = KeyType;
-  static constexpr Key kLimit = kQ * kP;
+  static constexpr Key kLimit =
+      std::min(kQ * kP, std::numeric_limits<Key>::max() / 4);
   /// Key of what no path has reached: above every sum.
-  static constexpr Key kNone = std::numeric_limits<Key>::max();
+  static constexpr Key kNone = std::numeric_limits<Key>::max() / 2;
 
   explicit IntegerKeys(const TerrainMap& map)
       : scale_(map.costs().scale),
@@ -65,8 +68,8 @@ class IntegerKeys {
   Key max_units_;
 };
 
-/// Half the memory and twice the cells per vector; holds routes of up to 47,321
-/// units (at tenths, cost 4,732).
+/// Half the memory and twice the cells per vector; holds routes of up to 32,089
+/// units (at tenths, cost 3,208).
 using NarrowKeys = IntegerKeys<std::uint32_t, 33'461, 47'321>;
 /// Holds routes of up to 1.8e9 units.
 using WideKeys = IntegerKeys<std::uint64_t, 1'311'738'121, 1'855'077'841>;

@@ -236,8 +236,9 @@ class Sweeper {
   bool StoreWanted(int y, int x, Lanes keys) {
     task_.visited += kLanes;
     const Lanes old = Load<Lanes>(Row(y) + x);
-    const Lanes octile = Max(Load<Lanes>(task_.along_x + x) + task_.turn_y[y],
-                             Load<Lanes>(task_.turn_x + x) + task_.along_y[y]);
+    const Lanes octile =
+        Max(Load<Lanes>(task_.along_x + x) + Splat(task_.turn_y[y]),
+            Load<Lanes>(task_.turn_x + x) + Splat(task_.along_y[y]));
     keys = Min(keys, limit_);
     keys = keys + octile < Splat(task_.bound) ? keys : old;
     keys = Min(keys, old);
@@ -301,7 +302,7 @@ class Sweeper {
   }
   // Blocked cells weigh as much as a key can be.
   Lanes Weights(Lanes units, std::uint32_t per_unit) const {
-    return units == 0 ? limit_ : units * per_unit;
+    return units == 0 ? limit_ : units * Splat(per_unit);
   }
 
   std::uint32_t OctileBound(int y, int x) const {

@@ -11,7 +11,9 @@
 namespace terra {
 namespace {
 
-using Lanes [[gnu::vector_size(4 * kLanes)]] = std::uint32_t;
+// Signed, because SSE2 and AVX2 compare no others; keys leave room for the
+// sign.
+using Lanes [[gnu::vector_size(4 * kLanes)]] = std::int32_t;
 using Codes [[gnu::vector_size(2 * kLanes)]] = std::uint16_t;
 
 template <typename Vector, typename Element>
@@ -26,7 +28,7 @@ void Store(std::uint32_t* to, Lanes lanes) {
 }
 
 Lanes Splat(std::uint32_t value) {
-  return Lanes{} + value;
+  return Lanes{} + static_cast<std::int32_t>(value);
 }
 
 Lanes Min(Lanes a, Lanes b) {
@@ -39,7 +41,7 @@ Lanes Max(Lanes a, Lanes b) {
 // Whether a is below b in any lane.
 bool AnyBelow(Lanes a, Lanes b) {
 #if defined(__AVX512F__)
-  return _mm512_cmplt_epu32_mask(reinterpret_cast<__m512i>(a),
+  return _mm512_cmplt_epi32_mask(reinterpret_cast<__m512i>(a),
                                  reinterpret_cast<__m512i>(b)) != 0;
 #elif defined(__AVX2__)
   return _mm256_movemask_epi8(reinterpret_cast<__m256i>(a < b)) != 0;

@@ -44,6 +44,8 @@ class BoostPeer : public Peer {
   explicit BoostPeer(const ArcGraph& arcs) : arcs_(arcs) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     std::vector<Weight> weights;
+    pairs.reserve(arcs.head.size());
+    weights.reserve(arcs.head.size());
     for (std::size_t n = 0; n < static_cast<std::size_t>(arcs.num_nodes); ++n) {
       for (int i = arcs.first[n]; i < arcs.first[n + 1]; ++i) {
         const auto k = static_cast<std::size_t>(i);

@@ -36,6 +36,7 @@ class LemonPeer : public Peer {
  public:
   explicit LemonPeer(const ArcGraph& arcs) : arcs_(arcs) {
     std::vector<std::pair<int, int>> pairs;
+    pairs.reserve(arcs.head.size());
     for (int node = 0; node < arcs.num_nodes; ++node) {
       const auto n = static_cast<std::size_t>(node);
       for (int i = arcs.first[n]; i < arcs.first[n + 1]; ++i) {

@@ -1,6 +1,8 @@
 """Times scikit-image's route_through_array on the maps that terra-speed wrote.
 
-usage: skimage_peer.py FOLDER      reads FOLDER/maps, writes FOLDER/skimage.csv
+usage: skimage_peer.py FOLDER    reads FOLDER/maps, writes FOLDER/samples/skimage-*
+
+Cases that are there already are kept.
 
 Not the same work: a step costs its length times the mean of the two cells (ours:
 the cell entered), and there is no lower bound that leads the search to the goal.
@@ -24,23 +26,33 @@ def time_once(costs, start, goal):
     return (time.thread_time() - begin) * 1e6
 
 
+def measure(case, costs):
+    """The row of a case for the samples."""
+    side = int(case["side"])
+    # float64, which the algorithm would convert to in every call.
+    costs = costs.reshape(side, side).astype(float)
+    start = int(case["start_y"]), int(case["start_x"])
+    goal = int(case["goal_y"]), int(case["goal_x"])
+    times = [time_once(costs, start, goal) for _ in range(ROUNDS)]
+    return [side, case["family"], case["index"],
+            "scikit-image route_through_array", statistics.median(times), side * side]
+
+
 def main(folder):
-    with open(folder / "maps" / "cases.csv", newline="") as file:
-        cases = list(csv.DictReader(file))
-    with open(folder / "skimage.csv", "w", newline="") as file:
-        out = csv.writer(file)
-        out.writerow("side family index work microseconds amount".split())
-        for case in cases:
-            side = int(case["side"])
-            costs = numpy.fromfile(folder / "maps" / case["file"], "<f4")
-            # float64, which the algorithm would convert to in every call.
-            costs = costs.reshape(side, side).astype(float)
-            start = int(case["start_y"]), int(case["start_x"])
-            goal = int(case["goal_y"]), int(case["goal_x"])
-            times = [time_once(costs, start, goal) for _ in range(ROUNDS)]
-            out.writerow([side, case["family"], case["index"],
-                          "scikit-image route_through_array",
-                          statistics.median(times), side * side])
+    for ends in sorted((folder / "maps").glob("*.csv")):
+        samples = folder / "samples" / f"skimage-{ends.name}"
+        if samples.exists():
+            continue
+        print(f"scikit-image: {ends.stem}", file=sys.stderr)
+        with open(ends, newline="") as file:
+            case = next(csv.DictReader(file))
+        row = measure(case, numpy.fromfile(ends.with_suffix(".f32"), "<f4"))
+        part = samples.with_suffix(".part")
+        with open(part, "w", newline="") as file:
+            out = csv.writer(file)
+            out.writerow("side family index work microseconds amount".split())
+            out.writerow(row)
+        part.rename(samples)
 
 
 if __name__ == "__main__":

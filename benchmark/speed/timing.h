@@ -24,9 +24,10 @@ struct TimedSample {
   double amount = 1;
 };
 
-/// Runs the works in turn (A B C, A B C, ...), so that whatever else the
-/// machine does falls on all of them, and returns each one's median over the
-/// rounds. Units: this thread's CPU time. Pre: rounds >= 1.
+/// Times works with Google Benchmark, each `rounds` times, in a random order of
+/// all rounds of all works (its random interleaving), so that whatever else the
+/// machine does falls on all of them. Returns each one's median, in the order
+/// of the works. Units: this thread's CPU time. Pre: rounds >= 2.
 std::vector<TimedSample> TimeInterleaved(const std::vector<TimedWork>& works,
                                          int rounds);
 

@@ -7,15 +7,11 @@
 
 namespace terra::benchmark {
 
-/// The graph libraries' peers take a graph of 100 bytes a cell, so that they
-/// are left out on the largest maps.
-enum class Peers { kAll, kWithoutGraphs };
-
-/// Native searches in every form that this machine has, with and without the
-/// baseline's cost as upper bound, beside the peers and the floor. All costs
-/// found must agree, or it ends as for a bug.
-std::vector<TimedSample> TimeSearches(const SpeedCase& c, Peers peers,
-                                      int rounds);
+/// Native searches in every form that this machine has, knowing nothing, with
+/// the baseline's cost as upper bound, and with that of a lattice of their own,
+/// beside the peers and the floor. All costs found must agree, or it ends as
+/// for a bug. The graph libraries take up to 400 bytes a cell.
+std::vector<TimedSample> TimeSearches(const SpeedCase& c, int rounds);
 
 /// Searches for the worst cases, where some have no route: automatic choice and
 /// textbook A*.

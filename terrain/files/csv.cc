@@ -167,7 +167,9 @@ std::string CsvLine(const std::vector<std::string>& fields) {
   std::string line;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (i > 0) line += ',';
-    if (fields[i].find_first_of(",\"\r\n") == std::string::npos) {
+    // At the start of a text a byte order mark would not be read back.
+    if (fields[i].find_first_of(",\"\r\n") == std::string::npos &&
+        !fields[i].starts_with(kByteOrderMark)) {
       line += fields[i];
       continue;
     }

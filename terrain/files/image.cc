@@ -42,6 +42,7 @@ Error Torn(const std::string& name, std::size_t bytes) {
 // Walks the chunks from IHDR to IEND. Checksums and pixels are the decoder's.
 Result<PngHeader> ReadPngHeader(std::string_view bytes,
                                 const std::string& name) {
+  if (!bytes.starts_with(kPngSignature)) return Torn(name, 0);
   PngHeader header;
   std::size_t at = kPngSignature.size();
   for (bool first = true;; first = false) {

@@ -150,25 +150,25 @@ TEST(CallGate, TheBreakersPauseDoublesUntilACallIsAnswered) {
                  .breaker_first_wait_s = 5,
                  .breaker_max_wait_s = 12});
   gate.Ended(Unanswered(NoAnswer::kTransport), 0);
-  EXPECT_FALSE(gate.breaker_open(0));
+  EXPECT_EQ(gate.pause_s(0), 0);
   gate.Ended(Unanswered(NoAnswer::kHttpStatus), 0);
   EXPECT_EQ(gate.MayCall(4.9).reason, NoAnswer::kBreakerOpen);
   EXPECT_EQ(gate.MayCall(5).reason, NoAnswer::kNone);
   gate.Ended(Unanswered(NoAnswer::kDeadline), 5);
-  EXPECT_TRUE(gate.breaker_open(14.9));
+  EXPECT_GT(gate.pause_s(14.9), 0);
   gate.Ended(Unanswered(NoAnswer::kDeadline), 15);
-  EXPECT_TRUE(gate.breaker_open(26.9));
-  EXPECT_FALSE(gate.breaker_open(27)) << "never longer than allowed";
+  EXPECT_GT(gate.pause_s(26.9), 0);
+  EXPECT_EQ(gate.pause_s(27), 0) << "never longer than allowed";
   gate.Ended(Answered(), 27);
   EXPECT_EQ(gate.failures_in_succession(), 0);
   gate.Ended(Unanswered(NoAnswer::kTransport), 28);
-  EXPECT_FALSE(gate.breaker_open(28));
+  EXPECT_EQ(gate.pause_s(28), 0);
 }
 
 TEST(CallGate, ACancelledCallIsNoFailure) {
   CallGate gate({.breaker_failures = 1});
   gate.Ended(Unanswered(NoAnswer::kCancelled), 0);
-  EXPECT_FALSE(gate.breaker_open(0));
+  EXPECT_EQ(gate.pause_s(0), 0);
 }
 
 TEST(PriceTable, PricesTheModelThatAnsweredElseTheOneAskedFor) {

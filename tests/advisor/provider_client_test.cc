@@ -224,6 +224,15 @@ TEST(ProviderClientTest, ErrorsSayWhatToDo) {
               HasSubstr(closed_url + "/v1/responses): does the server run"));
 }
 
+TEST(ProviderClientTest, NothingFromOutsideSteersATerminal) {
+  ScriptedReply hostile = Failing(400);
+  hostile.body = ErrorBody("openai", "bad\x1b[2J\r\nmodel\x7f");
+  ScriptedLlmServer server({hostile});
+  const std::string error =
+      Client("openai", server.url())->Ask(Question(), {}).error;
+  EXPECT_EQ(error.find_first_of("\x1b\r\n\x7f"), std::string::npos) << error;
+}
+
 TEST(ProviderClientTest, EveryFormOfADemandedWaitLeadsToTheAnswer) {
   std::array<char, 64> soon{};
   const std::time_t at = std::time(nullptr) + 1;

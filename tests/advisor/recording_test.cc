@@ -138,9 +138,10 @@ TEST(LimitedClientTest, RefusesAtOnceOnARobotAndWaitsInAnEvaluation) {
   LimitedClient robot(std::make_unique<Echo>(), limits, {}, AtLimit::kRefuse,
                       monitor);
   EXPECT_TRUE(robot.Ask(Question("a"), {}).came());
-  EXPECT_EQ(robot.Ask(Question("a"), {}).reason, NoAnswer::kRateLimit);
+  const LlmReply refused = robot.Ask(Question("a"), {});
+  EXPECT_EQ(refused.reason, NoAnswer::kRateLimit);
+  EXPECT_THAT(refused.error, HasSubstr("the next call may go in 60 s"));
   EXPECT_EQ(monitor->figures().statistics.no_answers(), 1);
-  EXPECT_THAT(monitor->figures().last_error, HasSubstr("rate_limit"));
 
   LimitedClient evaluation(std::make_unique<Echo>(), limits, {}, AtLimit::kWait,
                            monitor);

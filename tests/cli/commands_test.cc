@@ -213,15 +213,35 @@ TEST(TerraUsage, ProgramsOnTheBusRefuseUnknownOptionsAndConfigKeys) {
 
 TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
   const testing::TempFolder folder;
-  const std::string planner = testing::ProgramPath("terra-planner");
-  const RunResult first =
-      testing::RunToEnd({planner, "--stride", "25", "--print-config"});
-  ASSERT_EQ(first.exit_code, 0);
-  EXPECT_THAT(first.output, HasSubstr("stride=25"));
-  const std::string config = folder.Write("planner.toml", first.output);
-  EXPECT_EQ(
-      testing::RunToEnd({planner, "--config", config, "--print-config"}).output,
-      first.output);
+  struct Case {
+    std::string program;
+    std::vector<std::string> options;
+    std::vector<std::string> lines;
+  };
+  for (const Case& tested :
+       {Case{"terra-planner", {"--stride", "25"}, {"stride=25\n"}},
+        // What is on without a word of the user's says so too.
+        Case{"terra-advisor",
+             {},
+             {"method=\"advisor\"\n", "overlay=true\n", "route-text=true\n",
+              "rea=true\n", "images=true\n"}},
+        Case{"terra-advisor",
+             {"--method", "direct", "--no-rea", "--price", "m=1:2"},
+             {"method=\"direct\"\n", "rea=false\n", "m=1:2"}}}) {
+    std::vector<std::string> command = {testing::ProgramPath(tested.program),
+                                        "--print-config"};
+    command.insert(command.end(), tested.options.begin(), tested.options.end());
+    const RunResult first = testing::RunToEnd(command);
+    ASSERT_EQ(first.exit_code, 0) << first.output;
+    for (const std::string& line : tested.lines) {
+      EXPECT_THAT(first.output, HasSubstr(line));
+    }
+    const std::string config = folder.Write("read.toml", first.output);
+    EXPECT_EQ(testing::RunToEnd(
+                  {command.front(), "--config", config, "--print-config"})
+                  .output,
+              first.output);
+  }
 }
 
 TEST(TerraUsage, ExampleConfigurationsOfTheUnitsAreRead) {

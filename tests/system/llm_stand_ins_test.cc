@@ -75,7 +75,8 @@ TEST_F(SimulatedModel, ItsRouteIsDeployed) {
         return message.request_id == 11;
       });
   ASSERT_TRUE(advice);
-  EXPECT_EQ(advice->model, "terra-llm-sim") << "nobody takes it for a real one";
+  EXPECT_EQ(advice->model, "SIMULATED terra-llm-sim")
+      << "nobody takes it for a real one";
 }
 
 TEST_F(SimulatedModel, SpeaksTheFormsOfAllProvidersAndReadsAllPictures) {

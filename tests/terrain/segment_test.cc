@@ -1,7 +1,11 @@
 #include "terrain/segment.h"
 
+#include <iterator>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "terrain/segment_steps.h"
 
 namespace terra {
 namespace {
@@ -32,6 +36,29 @@ TEST(SegmentTest, EverySegmentInASquareKeepsItsShape) {
       EXPECT_EQ(cells.back(), (Cell{x, y}));
       for (std::size_t i = 1; i < cells.size(); ++i) {
         EXPECT_EQ(ChebyshevDistance(cells[i - 1], cells[i]), 1);
+      }
+    }
+  }
+}
+
+TEST(SegmentStepsTest, VisitTheCellsOfTheSegment) {
+  constexpr int kWidth = 15;
+  const auto index = [](Cell c) {
+    return c.y * kWidth + c.x;
+  };
+  const Cell from{7, 7};
+  for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kWidth; ++y) {
+      const CellPath cells = RasterizeSegment(from, {x, y});
+      SegmentSteps steps(from, {x, y}, kWidth);
+      ASSERT_EQ(steps.count() + 1, std::ssize(cells));
+      std::ptrdiff_t at = index(from);
+      for (std::size_t i = 1; i < cells.size(); ++i) {
+        const bool diagonal = steps.NextIsDiagonal();
+        EXPECT_EQ(diagonal,
+                  cells[i].x != cells[i - 1].x && cells[i].y != cells[i - 1].y);
+        at += steps.along_longer() + (diagonal ? steps.along_shorter() : 0);
+        EXPECT_EQ(at, index(cells[i])) << x << ", " << y << ", step " << i;
       }
     }
   }

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Writes the seed inputs of the fuzz targets to corpus/ (they are committed)."""
+import pathlib
+import struct
+import zlib
+
+HERE = pathlib.Path(__file__).resolve().parent
+GOLDEN = HERE.parent / "bus" / "golden"
+TYPES = ["map_header", "map_tile", "map_request", "plan_request", "baseline",
+         "advice", "verdict", "deployed", "pose", "status", "config",
+         "log_mark"]
+
+
+def save(target, name, data):
+    folder = HERE / "corpus" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(data)
+
+
+def text(s):
+    return struct.pack(">i", len(s) + 1) + s.encode() + b"\0"
+
+
+def advice(route, kind=2, anchor=0, utime=1):
+    """An encoded advice_t; an odd utime gets the right key from the target."""
+    x, y = route[0] if route else (1, 1)
+    body = struct.pack(">8q", utime, 2, 3, 1, 4, 5, 4711, 2)
+    body += struct.pack(">3i", anchor, x, y)
+    body += text("fuzz") + text("advisor") + text("chat") + text("model")
+    body += struct.pack(">qiqbbb", 1, 1, 0, kind, 0, 0)
+    body += struct.pack(">i", len(route))
+    body += b"".join(struct.pack(">i", p[0]) for p in route)
+    body += b"".join(struct.pack(">i", p[1]) for p in route)
+    body += text("") + text("No.") + struct.pack(">qqdqq", 1, 2, 0.5, 3, 4)
+    body += text("")
+    return (GOLDEN / "advice_t.bin").read_bytes()[:8] + body
+
+
+def datagram(payload, channel="TERRA_ADVICE"):
+    return b"LC02" + struct.pack(">I", 7) + channel.encode() + b"\0" + payload
+
+
+def png(width, height, color, rows):
+    def chunk(kind, data):
+        crc = zlib.crc32(kind + data)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", crc)
+    head = struct.pack(">IIBBBBB", width, height, 8, color, 0, 0, 0)
+    raw = b"".join(b"\0" + row for row in rows)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) +
+            chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+
+
+for number, name in enumerate(TYPES):
+    save("messages", name, bytes([number]) +
+         (GOLDEN / (name + "_t.bin")).read_bytes())
+
+save("advice", "better", datagram(advice([(1, 1), (2, 0), (13, 0), (14, 9)])))
+save("advice", "ahead", datagram(advice([(1, 5), (1, 8), (2, 9), (14, 9)],
+                                        anchor=4)))
+save("advice", "blocked", datagram(advice([(1, 1), (14, 9)])))
+save("advice", "retain", datagram(advice([], kind=1)))
+save("advice", "old_key", datagram(advice([(1, 1), (14, 9)], utime=2)))
+save("advice", "other_channel", datagram(advice([]), "TERRA_POSE"))
+
+save("map_files", "ids", b"\0" + png(3, 2, 0, [b"\0\1\2", b"\3\4\5"]))
+save("map_files", "colours", b"\0" + png(1, 1, 2, [b"\0\0\0"]))
+save("map_files", "movingai",
+     b"\1type octile\nheight 2\nwidth 3\nmap\n.@.\nTSW\n")
+save("map_files", "pgm", b"\2P5\n# c\n3 2\n255\n\0\1\2\3\4\5")
+save("map_files", "ros", b"\3image: map.pgm\nresolution: 0.05\n"
+     b"origin: [0.0, -1.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
+     b"free_thresh: 0.196\nmode: trinary\n")
+
+save("tables", "csv", b'\0a,b\r\n1,"x ""y"", z"\n\n2,\n')
+save("tables", "legend", b"\1id,name,cost,color\n0,wall,inf,#000000\n"
+     b"1,grass,1.5,#00ff00\n")
+save("tables", "cases", b"\2case_id,map,start_x,start_y,goal_x,goal_y,group\n"
+     b"c1,maps/1.png,1,2,3,4,easy\nc2,maps/2.png,5,6,7,8,hard\n")
+
+save("answers", "yes", b"\0**Yes.**")
+save("answers", "no", b"\0No. [(1, 2), (30, 4), (5, 6)]")
+save("answers", "lists", b"\0No.\n```\n[[1,2],[3,4]]\n```\nor [(1,2), (9,9)]")
+save("answers", "route", b"\1[(0, 0), (10, 10)]")
+save("answers", "route_text", b"\2[(1, 2), (-3, 4)]")
+save("answers", "point", b"\x0312,-7")
+save("answers", "record", b'\4{"schema":1,"request_hash":"ab","repeat":0,'
+     b'"status":"answered","answer_text":"Yes"}')
+save("answers", "openai", b'\5{"id":"r1","status":"completed","output":'
+     b'[{"type":"message","content":[{"type":"output_text","text":"Yes"}]}],'
+     b'"usage":{"input_tokens":5,"output_tokens":1}}')
+save("answers", "gemini", b'\6{"candidates":[{"content":{"parts":[{"text":'
+     b'"Yes"}]},"finishReason":"STOP"}],"usageMetadata":{"promptTokenCount":5}}')
+save("answers", "anthropic", b'\7{"content":[{"type":"text","text":"Yes"}],'
+     b'"stop_reason":"end_turn","usage":{"input_tokens":5,"output_tokens":1}}')
+save("answers", "chat", b'\x08{"choices":[{"message":{"content":"Yes"},'
+     b'"finish_reason":"stop"}],"usage":{"prompt_tokens":5}}')
+save("answers", "error", b'\5{"error":{"message":"slow down","code":'
+     b'"rate_limit_exceeded","type":"requests"}}')
+save("answers", "batch", b'\x09{"custom_id":"ab-0","response":{"status_code":'
+     b'200,"body":{"id":"r1","status":"completed","output":[]}},"error":null}')
+save("answers", "batch_error", b'\x09{"custom_id":"ab-0","result":{"type":'
+     b'"errored","error":{"type":"invalid_request"}}}')
+
+save("config", "advisor", b'\0backend="chat"\nrobot="R1"\npolish=false\n'
+     b'lcm-url="udpm://239.255.76.67:7667?ttl=0"\n')
+save("config", "unknown_key", b"\0no-such-option=1\n")
+save("config", "section", b"\0# c\n[a.b]\nc=[1, 2, 'x']\n")
+save("config", "url", b"\1udpm://239.255.76.67:7667?ttl=1&recv_buf_size=99")
+save("config", "url_last_port", b"\1udpm://:65535")
+
+
+def event(number, channel, data):
+    return struct.pack(">Iqqii", 0xEDA1DA01, number, 1000 * number,
+                       len(channel), len(data)) + channel.encode() + data
+
+
+LOG = b"".join(
+    event(number, "TERRA_" + name.upper().removesuffix("_MARK"),
+          (GOLDEN / (name + "_t.bin")).read_bytes())
+    for number, name in enumerate(TYPES))
+save("logs", "one_of_each", LOG)
+save("logs", "torn", LOG[:-40])
+save("logs", "damaged", LOG[:300] + b"\0\1\2" + LOG[310:])

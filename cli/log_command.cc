@@ -60,8 +60,17 @@ struct AuditArguments {
 void PrintAudit(const logger::Audit& audit) {
   std::cout << audit.verdicts << " verdicts and " << audit.deployed
             << " deployments made again, the same; " << audit.anchors
-            << " taken as the state to begin from; " << audit.sessions
-            << " sessions of the gate\n";
+            << " taken as the state to begin from\n";
+  for (const std::int64_t session : audit.sessions) {
+    std::cout << "session of the gate: " << session << "\n";
+  }
+  if (audit.unchecked > 0) {
+    std::cout << audit.unchecked
+              << " verdicts from before the first DEPLOYED not checked\n";
+  }
+  for (const std::string& note : audit.notes) {
+    std::cout << "note: " << note << "\n";
+  }
   for (const logger::Finding& finding : audit.findings) {
     std::cout << logger::KindName(finding.kind);
     if (finding.decision != 0) std::cout << ", decision " << finding.decision;
@@ -83,7 +92,8 @@ void PrintAuditJson(const logger::Audit& audit) {
   const nlohmann::json all = {
       {"clean", audit.clean()},     {"sessions", audit.sessions},
       {"verdicts", audit.verdicts}, {"deployed", audit.deployed},
-      {"anchors", audit.anchors},   {"num_findings", audit.num_findings},
+      {"anchors", audit.anchors},   {"unchecked", audit.unchecked},
+      {"notes", audit.notes},       {"num_findings", audit.num_findings},
       {"findings", findings}};
   std::cout << all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
             << "\n";

@@ -66,7 +66,7 @@ Audit AuditContents(LogContents& contents, const LogReader& reader,
     }
   }
   for (const auto& [session, decisions] : contents.decisions) {
-    ++audit.sessions;
+    audit.sessions.push_back(session);
     SessionAudit(contents, session, audit).Run();
   }
   return audit;

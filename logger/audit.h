@@ -30,11 +30,11 @@ const char* KindName(Finding::Kind kind);
 struct Audit {
   static constexpr std::size_t kMaxFindings = 1'000;
 
-  std::int64_t sessions = 0;  ///< Of the gate.
-  std::int64_t verdicts = 0;  ///< Made again, and the same.
-  std::int64_t deployed = 0;  ///< Made again, and the same.
-  std::int64_t anchors = 0;   ///< Deployments taken as the state to go on from:
-                              ///< route and costs made again, cause not known.
+  std::vector<std::int64_t> sessions;  ///< Of the gate.
+  std::int64_t verdicts = 0;           ///< Made again, and the same.
+  std::int64_t deployed = 0;           ///< Made again, and the same.
+  std::int64_t anchors = 0;  ///< Deployments taken as the state to go on from:
+                             ///< route and costs made again, cause not known.
   std::int64_t unchecked = 0;     ///< Verdicts from before the first DEPLOYED.
   std::vector<Finding> findings;  ///< The first kMaxFindings.
   std::int64_t num_findings = 0;

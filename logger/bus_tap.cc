@@ -22,7 +22,9 @@ namespace {
 
 constexpr std::int64_t kReceiveBuffer = std::int64_t{16} << 20;
 constexpr int kLcmQueueCapacity = 20'000;
-constexpr std::size_t kDatagramsPerTurn = 256;
+constexpr int kSilenceMs = 20;  // At the end.
+constexpr int kAdviceWaitsMs = 2;
+constexpr std::size_t kDatagramsPerTurn = 4'096;
 // liblcm sends itself this once, to see whether multicast works.
 constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
 
@@ -118,15 +120,28 @@ void BusTap::OnMessage(const lcm_recv_buf_t* buffer, const char* channel,
 
 // THREADING: the one thread that handles this LCM object and the advice socket.
 // It copies messages into the queue, stamped with the time, and never writes.
+// Advice waits a moment in its socket, so that the baseline that it answers,
+// which comes through one more thread, stands before it in the log.
 void BusTap::Listen() {
   std::array<pollfd, 3> waited = {
       pollfd{stop_fd_, POLLIN, 0}, pollfd{lcm_get_fileno(lcm_), POLLIN, 0},
       pollfd{advice_ ? advice_->fd() : -1, POLLIN, 0}};
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
-    if (waited[0].revents != 0) return;
-    if (waited[1].revents != 0) lcm_handle(lcm_);
-    if (waited[2].revents != 0) DrainAdvice();
+    if (waited[0].revents != 0) break;
+    const bool advice = waited[2].revents != 0;
+    HearDeployedBus(waited[1], advice ? kAdviceWaitsMs : 0);
+    if (advice) DrainAdvice();
+  }
+  HearDeployedBus(waited[1], kSilenceMs);
+  if (advice_) DrainAdvice();
+}
+
+// Hears what is under way in buffers and liblcm's own thread, until the bus was
+// silent for so long. One that never falls silent is not waited for.
+void BusTap::HearDeployedBus(pollfd lcm, int silence_ms) {
+  for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0; ++i) {
+    lcm_handle(lcm_);
   }
 }
 

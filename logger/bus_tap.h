@@ -11,6 +11,7 @@
 #include "logger/event_queue.h"
 #include "terrain/result.h"
 
+struct pollfd;
 struct _lcm_t;
 struct _lcm_recv_buf_t;
 
@@ -42,6 +43,7 @@ class BusTap {
   static Result<std::unique_ptr<BusTap>> Open(const Urls& urls,
                                               const std::string& advice_channel,
                                               EventQueue& queue);
+  /// Hears what was sent before, then ends.
   ~BusTap();
   BusTap(const BusTap&) = delete;
   BusTap& operator=(const BusTap&) = delete;
@@ -53,6 +55,7 @@ class BusTap {
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
                         void* tap) noexcept;
   void Listen();
+  void HearDeployedBus(pollfd lcm, int silence_ms);
   void DrainAdvice();
 
   EventQueue& queue_;

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -15,16 +13,15 @@
 #include "logger/report_charts.h"
 #include "logger/report_html.h"
 #include "logger/report_map.h"
-#include "verifier/verify.h"
+#include "logger/report_stories.h"
+#include "logger/report_tables.h"
 
 namespace terra::logger {
 namespace {
 
-using terra_msg::baseline_t;
 using terra_msg::deployed_t;
 using terra_msg::verdict_t;
 
-constexpr std::size_t kMaxRows = 200;
 constexpr std::size_t kMaxMaps = 6;
 
 constexpr std::string_view kStyle = R"(
@@ -49,13 +46,15 @@ text-anchor:middle;fill:#5d6b7c}.value{font-size:12.5px;fill:#5d6b7c}
 .scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;
 font-size:13.5px}th{text-align:left;color:var(--soft);font-weight:600}
 th,td{padding:5px 10px 5px 0;border-bottom:1px solid var(--line);
-white-space:nowrap}td{font-variant-numeric:tabular-nums}
+white-space:nowrap}td{font-variant-numeric:tabular-nums}.long{display:inline-block;
+white-space:normal;overflow-wrap:anywhere;min-width:120px;max-width:330px}
 .maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(340px,1fr));
-gap:18px}.map{border:1px solid var(--line);border-radius:6px}
+gap:18px}.map{border:1px solid #b9c2ce;border-radius:4px}
 figure{margin:0}figcaption{font-size:13.5px;margin-top:6px;color:var(--soft)}
 .key{display:flex;gap:18px;flex-wrap:wrap;font-size:13px;color:var(--soft);
 margin-top:8px}.key i{display:inline-block;width:12px;height:12px;
-border-radius:3px;margin-right:6px;vertical-align:-1px}
+border-radius:3px;margin-right:6px;vertical-align:-1px;
+border:1px solid #0002}
 )";
 
 std::string UtcTime(std::int64_t time_us) {
@@ -68,82 +67,6 @@ std::string UtcTime(std::int64_t time_us) {
     return "?";
   }
   return text.data();
-}
-
-double SecondsBetween(std::int64_t from_us, std::int64_t to_us) {
-  return 1e-6 * (static_cast<double>(to_us) - static_cast<double>(from_us));
-}
-
-std::string ModeName(std::int8_t mode) {
-  constexpr std::array kNames = {"none", "baseline", "candidate", "hold"};
-  return mode >= 0 && mode < std::ssize(kNames)
-             ? kNames[static_cast<std::size_t>(mode)]
-             : "?";
-}
-
-std::string Point(int x, int y) {
-  return Format("%d, %d", x, y);
-}
-
-// What became of one request.
-struct RequestStory {
-  std::int64_t id = 0;
-  std::int64_t asked_us = 0;  // 0 = the log does not have it.
-  std::int64_t baseline_us = 0;
-  std::int64_t baseline_deployed_us = 0;
-  std::int64_t refined_us = 0;
-  const deployed_t* last = nullptr;  // That has a route.
-  std::int64_t last_us = 0;
-  std::int64_t candidates = 0;
-
-  double saving_percent() const {
-    return last != nullptr
-               ? 100.0 * (last->baseline_cost - last->deployed_cost) /
-                     last->baseline_cost
-               : std::nan("");
-  }
-};
-
-std::vector<RequestStory> Stories(const LogContents& contents) {
-  std::map<std::int64_t, RequestStory> stories;
-  for (const auto& [id, request] : contents.requests) {
-    stories[id].asked_us = request.time_us;
-  }
-  for (const auto& [name, baseline] : contents.baselines) {
-    std::int64_t& first = stories[baseline.message.request_id].baseline_us;
-    first = first == 0 ? baseline.time_us : std::min(first, baseline.time_us);
-  }
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      const auto* deployed = std::get_if<deployed_t>(&logged.message);
-      if (deployed == nullptr || deployed->request_id == 0) continue;
-      RequestStory& story = stories[deployed->request_id];
-      const bool baseline = deployed->mode == deployed_t::MODE_BASELINE;
-      const bool candidate = deployed->mode == deployed_t::MODE_CANDIDATE;
-      if (baseline && story.baseline_deployed_us == 0) {
-        story.baseline_deployed_us = logged.time_us;
-      }
-      if (candidate && story.refined_us == 0) story.refined_us = logged.time_us;
-      if (candidate) ++story.candidates;
-      if ((baseline || candidate) && logged.time_us >= story.last_us) {
-        story.last = deployed;
-        story.last_us = logged.time_us;
-      }
-    }
-  }
-  std::vector<RequestStory> in_order;
-  for (auto& [id, story] : stories) {
-    story.id = id;
-    in_order.push_back(story);
-  }
-  const auto begin_of = [](const RequestStory& story) {
-    return story.asked_us != 0 ? story.asked_us : story.baseline_us;
-  };
-  std::sort(in_order.begin(), in_order.end(),
-            [&](const RequestStory& a, const RequestStory& b) {
-              return begin_of(a) < begin_of(b);
-            });
-  return in_order;
 }
 
 std::string Card(const std::string& value, const char* name,
@@ -192,67 +115,29 @@ std::string Cards(const LogContents& contents,
   return html + "</div>\n";
 }
 
-std::string Key() {
-  std::string html = "<div class=\"key\">";
-  for (const auto& [color, name] :
-       std::vector<std::pair<const char*, const char*>>{
-           {"#1f4fe0", "baseline"},
-           {"#0a8f2e", "candidate deployed, accepted, alive"},
-           {"#d08a00", "retained, not cheaper, not best"},
-           {"#c62f2f", "refused, hold, not ready"},
-           {"#d5dae2", "no route"}}) {
-    html += std::string("<span><i style=\"background:") + color + "\"></i>" +
-            name + "</span>";
-  }
-  return html + "</div>\n";
-}
-
-std::string RequestTable(const std::vector<RequestStory>& stories) {
-  std::vector<std::vector<std::string>> rows;
-  const auto after = [](std::int64_t from_us, std::int64_t to_us) {
-    return from_us == 0 || to_us == 0
-               ? std::string("-")
-               : Duration(std::max(0.0, SecondsBetween(from_us, to_us)));
-  };
-  const std::size_t first =
-      stories.size() > kMaxRows ? stories.size() - kMaxRows : 0;
-  for (std::size_t i = first; i < stories.size(); ++i) {
-    const RequestStory& story = stories[i];
-    const deployed_t* last = story.last;
-    rows.push_back(
-        {std::to_string(story.id),
-         last ? Point(last->start_x, last->start_y) : "-",
-         last ? Point(last->goal_x, last->goal_y) : "-",
-         last ? Number(last->baseline_cost) : "-",
-         last ? Number(last->deployed_cost) : "-",
-         Number(story.saving_percent(), 1),
-         last ? ModeName(last->mode) + ", " + Escape(last->source) : "none",
-         after(story.asked_us, story.baseline_deployed_us),
-         after(story.asked_us, story.refined_us)});
-  }
-  return Table({"request", "start", "goal", "baseline cost", "deployed cost",
-                "saving %", "deployed last", "baseline after", "refined after"},
-               rows);
-}
-
 std::string Maps(LogContents& contents,
                  const std::vector<RequestStory>& stories) {
   std::string html = "<div class=\"maps\">\n";
-  std::size_t drawn = 0;
-  for (auto story = stories.rbegin();
-       story != stories.rend() && drawn < kMaxMaps; ++story) {
-    if (story->last == nullptr) continue;
+  std::vector<const RequestStory*> routed;
+  for (const RequestStory& story : stories) {
+    if (story.last != nullptr) routed.push_back(&story);
+  }
+  if (routed.size() > kMaxMaps) {
+    routed.erase(routed.begin(), routed.end() - kMaxMaps);
+  }
+  bus::MapPtr drawn;
+  for (const RequestStory* story : routed) {
     const deployed_t& last = *story->last;
     const bus::MapPtr map = contents.maps.Find(last.map_id);
     if (!map) continue;
-    ++drawn;
+    drawn = map;
     std::vector<DrawnRoute> routes;
     const auto* baseline = contents.FindBaseline(last.baseline_digest, 0);
     if (baseline != nullptr) {
-      routes.push_back({bus::WaypointsOf(baseline->message), "#1f4fe0"});
+      routes.push_back({bus::WaypointsOf(baseline->message), kBaselineColor});
     }
     if (last.mode == deployed_t::MODE_CANDIDATE) {
-      routes.push_back({bus::WaypointsOf(last), "#0a8f2e"});
+      routes.push_back({bus::WaypointsOf(last), kCandidateColor});
     }
     html += "<figure>" +
             MapFigure(map->map, routes, Cell{last.start_x, last.start_y},
@@ -265,8 +150,8 @@ std::string Maps(LogContents& contents,
                  : std::string("the baseline")) +
             ")</figcaption></figure>\n";
   }
-  return drawn > 0 ? html + "</div>\n"
-                   : "<p class=\"note\">no route on a complete map</p>\n";
+  if (!drawn) return "<p class=\"note\">no route on a complete map</p>\n";
+  return html + "</div>\n" + TerrainKey(drawn->map);
 }
 
 std::string Latencies(const LogContents& contents,
@@ -307,102 +192,6 @@ std::string Latencies(const LogContents& contents,
          "own clock.</p>\n";
 }
 
-std::string Health(const LogContents& contents) {
-  struct Process {
-    const terra_msg::status_t* last = nullptr;
-    std::set<std::int64_t> sessions;
-    std::int64_t heartbeats = 0;
-    std::int64_t last_us = 0;
-    double longest_silence = 0;
-  };
-  std::map<std::string, Process> processes;
-  for (const auto& status : contents.statuses) {
-    if (processes.size() >= kMaxRows &&
-        !processes.contains(status.message.status_name)) {
-      continue;
-    }
-    Process& process = processes[status.message.status_name];
-    if (process.last != nullptr) {
-      process.longest_silence =
-          std::max(process.longest_silence,
-                   SecondsBetween(process.last_us, status.time_us));
-    }
-    process.last = &status.message;
-    process.last_us = status.time_us;
-    ++process.heartbeats;
-    process.sessions.insert(status.message.session);
-  }
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [name, process] : processes) {
-    const terra_msg::status_t& last = *process.last;
-    const bool ready = last.state.starts_with("ready");
-    rows.push_back({Escape(name), Escape(last.host), std::to_string(last.pid),
-                    std::to_string(process.sessions.size()),
-                    std::to_string(process.heartbeats),
-                    Number(process.longest_silence, 1) + " s",
-                    std::string("<span class=\"") + (ready ? "good" : "bad") +
-                        "\">" + Escape(last.state) + "</span>",
-                    Escape(last.last_error), Escape(last.build_id)});
-  }
-  return Table({"process", "host", "pid", "starts", "heartbeats",
-                "longest silence", "last state", "last error", "build"},
-               rows);
-}
-
-std::string Verdicts(const LogContents& contents) {
-  std::vector<const Logged<LogContents::Decided>*> verdicts;
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      if (std::holds_alternative<verdict_t>(logged.message)) {
-        verdicts.push_back(&logged);
-      }
-    }
-  }
-  std::vector<std::vector<std::string>> rows;
-  const std::size_t first =
-      verdicts.size() > kMaxRows ? verdicts.size() - kMaxRows : 0;
-  for (std::size_t i = first; i < verdicts.size(); ++i) {
-    const auto& verdict = std::get<verdict_t>(verdicts[i]->message);
-    const bool accepted = verdict.code == verdict_t::CODE_ACCEPTED;
-    std::string code(verifier::CodeName(verifier::Code{verdict.code}));
-    if (accepted) code = "<span class=\"good\">" + code + "</span>";
-    rows.push_back({Format("%.3f s", SecondsBetween(contents.first_us,
-                                                    verdicts[i]->time_us)),
-                    std::to_string(verdict.decision), Escape(verdict.advisor),
-                    verdict.subject == verdict_t::SUBJECT_BASELINE
-                        ? "baseline"
-                        : std::to_string(verdict.attempt),
-                    code, Number(verdict.candidate_cost),
-                    Number(verdict.baseline_cost), Number(verdict.cost_to_beat),
-                    verdict.fail_segment >= 0
-                        ? Format("segment %d at ", verdict.fail_segment) +
-                              Point(verdict.fail_x, verdict.fail_y)
-                        : ""});
-  }
-  return Table({"time", "decision", "advisor", "attempt", "verdict",
-                "candidate", "baseline", "to beat", "failed"},
-               rows);
-}
-
-std::string AuditSection(const Audit& audit) {
-  std::string html = Format(
-      "<p>%lld verdicts and %lld deployments made again from their inputs, "
-      "byte for byte the same; %lld taken as the state to begin from.</p>\n",
-      static_cast<long long>(audit.verdicts),
-      static_cast<long long>(audit.deployed),
-      static_cast<long long>(audit.anchors));
-  if (audit.clean()) return html;
-  std::vector<std::vector<std::string>> rows;
-  for (const Finding& finding : audit.findings) {
-    if (rows.size() >= kMaxRows) break;
-    rows.push_back({KindName(finding.kind),
-                    finding.decision != 0 ? std::to_string(finding.decision)
-                                          : std::string(),
-                    Escape(finding.what)});
-  }
-  return html + Table({"finding", "decision", "what"}, rows);
-}
-
 }  // namespace
 
 std::string MakeReport(const std::string& title, LogReader& reader) {
@@ -420,13 +209,13 @@ std::string MakeReport(const std::string& title, LogReader& reader) {
           Number(SecondsBetween(contents.first_us, contents.last_us), 1) +
           " s, " + std::to_string(contents.events) + " events</p>\n";
   html += Cards(contents, stories, audit);
-  html += Section("Time line", TimeLine(contents) + Key());
+  html += Section("Time line", TimeLine(contents) + TimeLineKey());
   html += Section("Routes", Maps(contents, stories));
   html += Section("Requests", RequestTable(stories));
   html += Section("Latency", Latencies(contents, stories));
-  html += Section("Verdicts", Verdicts(contents));
-  html += Section("Processes", Health(contents));
-  html += Section("Audit", AuditSection(audit));
+  html += Section("Verdicts", VerdictTable(contents));
+  html += Section("Processes", ProcessTable(contents));
+  html += Section("Audit", AuditTable(audit));
   return html + "</main></body></html>\n";
 }
 

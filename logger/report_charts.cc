@@ -16,15 +16,10 @@ using terra_msg::verdict_t;
 
 constexpr double kWidth = 1120;
 constexpr double kLabels = 150;  // Left of the plot.
+constexpr double kRight = 30;    // Right of it, for half of the last label.
 constexpr double kLane = 26;
 constexpr std::size_t kMaxMarks = 3'000;  // Of one lane.
 constexpr std::size_t kMaxLanes = 12;     // Of advisors, of processes.
-
-constexpr char kRequestColor[] = "#6b4ea8";
-constexpr char kBaselineColor[] = "#1f4fe0";
-constexpr char kCandidateColor[] = "#0a8f2e";
-constexpr char kBadColor[] = "#c62f2f";
-constexpr char kMutedColor[] = "#9aa4b2";
 
 const char* ModeColor(std::int8_t mode) {
   switch (mode) {
@@ -35,7 +30,7 @@ const char* ModeColor(std::int8_t mode) {
     case deployed_t::MODE_HOLD:
       return kBadColor;
     default:
-      return "#d5dae2";
+      return kNoRouteColor;
   }
 }
 
@@ -43,9 +38,18 @@ const char* VerdictColor(std::int16_t code) {
   if (code == verdict_t::CODE_ACCEPTED) return kCandidateColor;
   if (code == verdict_t::CODE_RETAINED || code == verdict_t::CODE_NOT_BEST ||
       code == verdict_t::CODE_NOT_CHEAPER) {
-    return "#d08a00";
+    return kNoGainColor;
   }
   return kBadColor;
+}
+
+// The next of 1, 2, 5, 10, ... from a number on.
+double RoundStep(double at_least) {
+  const double decade = std::pow(10.0, std::floor(std::log10(at_least)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * decade >= at_least) return factor * decade;
+  }
+  return 10 * decade;
 }
 
 // Lays lanes below each other and draws marks into them.
@@ -71,7 +75,7 @@ class Lanes {
     if (++marks_ > kMaxMarks) return;
     svg_ += Format(
                 "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\" "
-                "fill-opacity=\"0.8\"><title>",
+                "stroke=\"#fff\"><title>",
                 X(time_us), y_, color) +
             Escape(title) + "</title></circle>\n";
   }
@@ -94,16 +98,18 @@ class Lanes {
   }
   std::string Finish() {
     const double bottom = y_ + kLane;
-    constexpr int kSteps = 8;
+    const double span_s = 1e-6 * span_us_;
+    const double step = RoundStep(span_s / 8);
+    const int decimals = step < 0.1 ? 2 : step < 1 ? 1 : 0;
     std::string axis;
-    for (int i = 0; i <= kSteps; ++i) {
-      const double x = kLabels + (kWidth - 20 - kLabels) * i / kSteps;
+    for (int i = 0; i * step <= span_s; ++i) {
+      const double x =
+          kLabels + (kWidth - kRight - kLabels) * i * step / span_s;
       axis += Format(
           "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"10\" y2=\"%.1f\" "
           "class=\"grid\"/><text x=\"%.1f\" y=\"%.1f\" "
           "class=\"tick\">%.*f s</text>\n",
-          x, x, bottom - 8, x, bottom + 8, span_us_ < 2e7 ? 2 : 0,
-          1e-6 * span_us_ * i / kSteps);
+          x, x, bottom - 8, x, bottom + 8, decimals, i * step);
     }
     return Format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\">", kWidth,
                   bottom + 18) +
@@ -115,7 +121,7 @@ class Lanes {
     const double at =
         (static_cast<double>(time_us) - static_cast<double>(first_us_)) /
         span_us_;
-    return kLabels + std::clamp(at, 0.0, 1.0) * (kWidth - 20 - kLabels);
+    return kLabels + std::clamp(at, 0.0, 1.0) * (kWidth - kRight - kLabels);
   }
 
   std::int64_t first_us_;
@@ -139,7 +145,7 @@ void DrawAdvice(const LogContents& contents, Lanes& lanes) {
     for (const auto* advice : all) {
       const bool proposes =
           advice->message.kind == terra_msg::advice_t::KIND_PROPOSE;
-      lanes.Dot(advice->time_us, proposes ? "#0f8b8d" : kMutedColor,
+      lanes.Dot(advice->time_us, proposes ? kAdviceColor : kMutedColor,
                 Format("attempt %lld, %d waypoints",
                        static_cast<long long>(advice->message.attempt),
                        advice->message.num_waypoints));
@@ -196,12 +202,31 @@ void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
   }
 }
 
+// "10 ms" for -2.
+std::string PowerOfTen(double exponent) {
+  const int unit = exponent < -3 ? -6 : exponent < 0 ? -3 : 0;
+  return Format("%.0f %s", std::pow(10.0, exponent - unit),
+                unit == -6   ? "&micro;s"
+                : unit == -3 ? "ms"
+                             : "s");
+}
+
 double Quantile(const std::vector<double>& sorted, double part) {
   const double at = part * static_cast<double>(sorted.size() - 1);
   return sorted[static_cast<std::size_t>(std::lround(at))];
 }
 
 }  // namespace
+
+std::string TimeLineKey() {
+  return Key({{kRequestColor, "request"},
+              {kBaselineColor, "baseline"},
+              {kAdviceColor, "advice"},
+              {kCandidateColor, "accepted, candidate deployed, alive"},
+              {kNoGainColor, "retained, not cheaper, not best"},
+              {kBadColor, "refused, hold, not ready"},
+              {kNoRouteColor, "no route"}});
+}
 
 std::string TimeLine(const LogContents& contents) {
   Lanes lanes(contents.first_us, contents.last_us);
@@ -240,10 +265,10 @@ std::string LatencyChart(std::vector<Latency> latencies) {
   const double first = std::floor(std::log10(low));
   const double last = std::ceil(std::log10(high));
   constexpr double kLeft = 210;
-  constexpr double kRight = 830;
+  constexpr double kEnd = 830;
   const auto x = [&](double value) {
     return kLeft +
-           (std::log10(value) - first) / (last - first) * (kRight - kLeft);
+           (std::log10(value) - first) / (last - first) * (kEnd - kLeft);
   };
   const double bottom = 34 * static_cast<double>(latencies.size()) + 12;
   std::string svg = Format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\">",
@@ -254,8 +279,7 @@ std::string LatencyChart(std::vector<Latency> latencies) {
         "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"6\" y2=\"%.1f\" "
         "class=\"grid\"/><text x=\"%.1f\" y=\"%.1f\" "
         "class=\"tick\">%s</text>\n",
-        at, at, bottom, at, bottom + 16,
-        Duration(std::pow(10.0, decade)).c_str());
+        at, at, bottom, at, bottom + 16, PowerOfTen(decade).c_str());
   }
   double y = -6;
   for (const Latency& latency : latencies) {
@@ -279,7 +303,7 @@ std::string LatencyChart(std::vector<Latency> latencies) {
     svg += Format(
         "<text x=\"%.0f\" y=\"%.1f\" class=\"value\">median %s, p99 "
         "%s, n=%zu</text>\n",
-        kRight + 14, y + 4, Duration(median).c_str(),
+        kEnd + 14, y + 4, Duration(median).c_str(),
         Duration(Quantile(values, 0.99)).c_str(), values.size());
   }
   return svg + "</svg>\n";

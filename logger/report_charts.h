@@ -12,6 +12,8 @@ namespace terra::logger {
 /// What happened when: a lane each for requests, baselines, every advisor,
 /// verdicts and what was deployed, then one for the heartbeats of each process.
 std::string TimeLine(const LogContents& contents);
+/// What its colours mean.
+std::string TimeLineKey();
 
 /// One measured quantity.
 struct Latency {

@@ -74,6 +74,16 @@ std::string Base64(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
+std::string Key(
+    const std::vector<std::pair<std::string, std::string>>& colors) {
+  std::string html = "<div class=\"key\">";
+  for (const auto& [color, name] : colors) {
+    html +=
+        "<span><i style=\"background:" + color + "\"></i>" + name + "</span>";
+  }
+  return html + "</div>\n";
+}
+
 std::string Table(const std::vector<std::string>& heads,
                   const std::vector<std::vector<std::string>>& rows) {
   std::string html = "<div class=\"scroll\"><table><thead><tr>";

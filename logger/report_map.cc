@@ -1,7 +1,10 @@
 #include "logger/report_map.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -68,9 +71,26 @@ std::string MapFigure(const TerrainMap& map,
           "base64,",
           map.width(), map.height(), map.width(), map.height()) +
       Base64(png) + "\"/>\n";
-  for (const DrawnRoute& drawn : routes) svg += Polyline(drawn, 1.4 * unit);
+  for (const DrawnRoute& drawn : routes) svg += Polyline(drawn, 2.2 * unit);
   return svg + Marker(start, "S", 6 * unit) + Marker(goal, "G", 6 * unit) +
          "</svg>\n";
+}
+
+std::string TerrainKey(const TerrainMap& map) {
+  std::array<bool, 256> there{};
+  for (const std::uint8_t id : map.ids().reshaped()) there[id] = true;
+  std::vector<std::pair<std::string, std::string>> colors;
+  for (int id = 0; id < 256; ++id) {
+    const Terrain* terrain = map.legend().Find(id);
+    if (!there[static_cast<std::size_t>(id)] || terrain == nullptr) continue;
+    const Color color = terrain->color;
+    colors.emplace_back(
+        Format("#%02x%02x%02x", color.r, color.g, color.b),
+        Escape(terrain->name) + (std::isfinite(terrain->cost)
+                                     ? ", cost " + Number(terrain->cost, 1)
+                                     : ", impassable"));
+  }
+  return Key(colors);
 }
 
 }  // namespace terra::logger

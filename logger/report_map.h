@@ -20,4 +20,7 @@ std::string MapFigure(const TerrainMap& map,
                       const std::vector<DrawnRoute>& routes, Cell start,
                       Cell goal);
 
+/// Names the terrains that are on a map, with their costs.
+std::string TerrainKey(const TerrainMap& map);
+
 }  // namespace terra::logger

@@ -15,8 +15,9 @@ namespace terra::verifier {
 struct GateOptions {
   /// A candidate must beat the deployed route by more than this, in cost.
   double margin = 0;
-  /// The session that DEPLOYED is sent under. Anchors and poses name it; with 0
-  /// only advice from the start on can be accepted.
+  /// The session that DEPLOYED is sent under (in a replay: was sent under).
+  /// Anchors and poses name it; with 0 only advice from the start on can be
+  /// accepted.
   std::int64_t session = 0;
 };
 

@@ -39,6 +39,9 @@ int main(int argc, char** argv) {
     app.add_option("--margin", gate.margin,
                    "a candidate must save more than this, in cost")
         ->check(CLI::Range(0.0, 1e9));
+    app.add_option("--replay-session", gate.session,
+                   "take anchors and poses of this session of a gate for one's "
+                   "own, to hear the log of that one; never on a robot");
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {

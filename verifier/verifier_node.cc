@@ -15,7 +15,7 @@ using terra_msg::deployed_t;
 using terra_msg::verdict_t;
 
 GateOptions WithSession(GateOptions options, std::int64_t session) {
-  options.session = session;
+  if (options.session == 0) options.session = session;
   return options;
 }
 

@@ -36,7 +36,7 @@ TEST(Audit, EveryDecisionOfAnHonestLogIsMadeAgain) {
   const Messages messages = EventfulRun();
   const Audit audit = AuditOf(messages);
   EXPECT_TRUE(audit.clean()) << Text(audit);
-  EXPECT_EQ(audit.sessions, 2);
+  EXPECT_EQ(audit.sessions.size(), 2U);
   EXPECT_EQ(audit.anchors, 0);
   EXPECT_EQ(audit.verdicts, std::ssize(Said<verdict_t>(messages)));
   EXPECT_EQ(audit.verdicts + audit.deployed, DecisionsIn(messages));

@@ -138,6 +138,37 @@ TEST_F(LoggerProcess, WhatItAcknowledgedSurvivesAKillAtAnyMoment) {
   EXPECT_EQ(Logs().size(), 5U);  // a new file for each start
 }
 
+// The x of the file's last event if that is a POSE; -1 else.
+int LastPose(const std::string& path) {
+  Result<LogReader> reader = LogReader::Open(path);
+  int last = -1;
+  while (const auto item = reader->Next()) {
+    if (item->event.channel == "TERRA_LOG") continue;
+    const auto pose = bus::Decode<pose_t>(item->event.data);
+    last = pose ? pose->pose_x : -1;
+  }
+  return last;
+}
+
+// LCM's own logger writes only when a further message arrives.
+TEST_F(LoggerProcess, AMessageIsOnTheDiskBeforeAnotherOneComes) {
+  ChildProcess logger(Command());
+  ASSERT_TRUE(WaitUntilReady());
+  const std::string log = Logs().at(0);
+  bool seen_alone = false;
+  // A heartbeat may come in between, but not each time.
+  for (int i = 1; i <= 10 && !seen_alone; ++i) {
+    pose_t pose{};
+    pose.pose_x = i;
+    peer_.Send(pose);
+    for (int look = 0; look < 100 && !seen_alone; ++look) {
+      seen_alone = LastPose(log) == i;
+      if (!seen_alone) std::this_thread::sleep_for(milliseconds(5));
+    }
+  }
+  EXPECT_TRUE(seen_alone);
+}
+
 TEST_F(LoggerProcess, LcmsOwnPlayerPlaysTheFile) {
   ChildProcess logger(Command());
   ASSERT_TRUE(WaitUntilReady());

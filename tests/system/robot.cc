@@ -29,10 +29,11 @@ std::vector<std::string> Robot::BusOptions() const {
 
 ChildProcess& Robot::Start(const std::string& name,
                            const std::vector<std::string>& options) {
-  const bool deployed_path = name == "map" || name == "planner" ||
-                             name == "graph-planner" || name == "verifier";
+  const bool has_program = name == "map" || name == "planner" ||
+                           name == "graph-planner" || name == "verifier" ||
+                           name == "logger";
   std::vector<std::string> command = {
-      ProgramPath(deployed_path ? "terra-" + name : "terra-advisor")};
+      ProgramPath(has_program ? "terra-" + name : "terra-advisor")};
   for (const std::string& option : BusOptions()) command.push_back(option);
   if (name == "map") {
     command.insert(command.end(), {"--map", map_path()});

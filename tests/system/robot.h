@@ -21,8 +21,8 @@ class Robot {
   explicit Robot(const TerrainMap& map);
 
   /// Starts a process, or starts it anew after it was killed. Names: "map",
-  /// "planner", "graph-planner", "verifier", "advisor"; any other is an advisor
-  /// of that name.
+  /// "planner", "graph-planner", "verifier", "logger", "advisor"; any other is
+  /// an advisor of that name.
   ChildProcess& Start(const std::string& name,
                       const std::vector<std::string>& options = {});
   void Kill(const std::string& name) { processes_.erase(name); }

@@ -1,0 +1,431 @@
+// The logger beside a whole set of real processes: what it records is audited
+// and replayed; what goes wrong with it stops nobody.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <thread>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "bus/codec.h"
+#include "logger/log_contents.h"
+#include "logger/log_info.h"
+#include "terrain/segment.h"
+#include "tests/system/bar_map.h"
+#include "tests/system/robot.h"
+
+namespace terra {
+namespace {
+
+using std::chrono::milliseconds;
+using terra_msg::advice_t;
+using terra_msg::baseline_t;
+using terra_msg::deployed_t;
+using terra_msg::pose_t;
+using terra_msg::status_t;
+using terra_msg::verdict_t;
+using testing::BarMap;
+using testing::BusPeer;
+using testing::ChildProcess;
+using testing::kBarGoal;
+using testing::kBarStart;
+using testing::ProgramPath;
+using testing::Robot;
+using testing::RunToEnd;
+
+// What a fresh gate is to hear of a log, and nothing else.
+constexpr const char* kInputs =
+    "(TERRA_MAP_HEADER|TERRA_MAP_TILE|TERRA_PLAN_REQUEST|TERRA_BASELINE|"
+    "TERRA_ADVICE|TERRA_POSE)";
+
+void StartDeployedPath(Robot& robot) {
+  robot.Start("map");
+  robot.Start("planner", {"--stride", "20"});
+  robot.Start("verifier");
+}
+
+std::string LogFolderOf(const Robot& robot) {
+  return robot.folder().Path("log");
+}
+
+std::vector<std::string> LogsOf(const Robot& robot) {
+  std::vector<std::string> logs;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(LogFolderOf(robot))) {
+    logs.push_back(entry.path().string());
+  }
+  std::sort(logs.begin(), logs.end());
+  return logs;
+}
+
+logger::LogContents Read(const std::string& path) {
+  Result<logger::LogReader> reader = logger::LogReader::Open(path);
+  EXPECT_TRUE(reader.ok());
+  logger::SealChecker seals;
+  return logger::LogContents::Load(*reader, seals);
+}
+
+logger::LogInfo InfoOf(const std::string& path) {
+  Result<logger::LogReader> reader = logger::LogReader::Open(path);
+  EXPECT_TRUE(reader.ok());
+  return logger::Inspect(*reader);
+}
+
+void ExpectCleanAudit(const std::string& log) {
+  const auto audit = RunToEnd({ProgramPath("terra"), "log", "audit", log});
+  EXPECT_EQ(audit.exit_code, 0) << log << ":\n" << audit.output;
+}
+
+advice_t AdviceOf(const std::string& advisor, const baseline_t& baseline) {
+  advice_t advice{};
+  advice.request_id = baseline.request_id;
+  advice.map_id = baseline.map_id;
+  advice.baseline_digest = baseline.baseline_digest;
+  advice.anchor_x = baseline.start_x;
+  advice.anchor_y = baseline.start_y;
+  advice.advisor = advisor;
+  advice.attempt = 1;
+  advice.kind = advice_t::KIND_PROPOSE;
+  return advice;
+}
+
+// A request that two advisors answer, and a third lies about.
+void ServeRequest(Robot& robot, std::int64_t id, Cell start, Cell goal) {
+  ASSERT_TRUE(robot.Ask(id, start, goal));
+  const auto baseline =
+      robot.deployed_bus().WaitFor<baseline_t>([id](const baseline_t& message) {
+        return message.request_id == id;
+      });
+  ASSERT_TRUE(baseline);
+  advice_t lie = AdviceOf("liar", *baseline);
+  bus::SetWaypoints(lie, {start, {400, 3}, goal});
+  robot.advice_bus().Send(lie);
+  for (const char* advisor : {"searcher", "cutter", "liar"}) {
+    ASSERT_TRUE(
+        robot.deployed_bus().WaitFor<verdict_t>([&](const verdict_t& verdict) {
+          return verdict.advisor == advisor && verdict.request_id == id;
+        }))
+        << advisor << ", request " << id;
+  }
+  // Two buses keep no order: the log may have an advice before its baseline.
+  // Advisors repeat theirs, and so does this one.
+  robot.advice_bus().Send(lie);
+  for (const char* advisor : {"searcher", "cutter"}) {
+    int heard = 0;
+    ASSERT_TRUE(
+        robot.advice_bus().WaitFor<advice_t>([&](const advice_t& advice) {
+          return advice.advisor == advisor && advice.request_id == id &&
+                 ++heard == 2;
+        }));
+  }
+}
+
+// What is in force when the gate has taken all that was said before: it repeats
+// it in each turn.
+std::optional<deployed_t> InForce(Robot& robot) {
+  robot.deployed_bus().Forget();
+  int heard = 0;
+  return robot.deployed_bus().WaitFor<deployed_t>([&](const deployed_t&) {
+    return ++heard == 3;
+  });
+}
+
+// The robot drives; of two anchors on its way one is passed.
+void Drive(Robot& robot, const deployed_t& deployed) {
+  const CellPath cells = RasterizeRoute(bus::WaypointsOf(deployed));
+  ASSERT_GT(cells.size(), 60U);
+  pose_t pose{};
+  pose.pose_x = cells[30].x;
+  pose.pose_y = cells[30].y;
+  pose.deployed_session = deployed.session;
+  pose.deployed_route_seq = deployed.route_seq;
+  robot.deployed_bus().Send(pose);
+  ASSERT_TRUE(InForce(robot));
+  for (const int index : {20, 60}) {
+    advice_t advice{};
+    advice.request_id = deployed.request_id;
+    advice.map_id = deployed.map_id;
+    advice.baseline_digest = deployed.baseline_digest;
+    advice.anchor_session = deployed.session;
+    advice.anchor_route_seq = deployed.route_seq;
+    advice.anchor_index = index;
+    const Cell anchor = cells[static_cast<std::size_t>(index)];
+    advice.anchor_x = anchor.x;
+    advice.anchor_y = anchor.y;
+    advice.advisor = "driver";
+    advice.attempt = index;
+    advice.kind = advice_t::KIND_PROPOSE;
+    bus::SetWaypoints(advice, {anchor, {deployed.goal_x, deployed.goal_y}});
+    const auto judged = [&] {
+      robot.advice_bus().Send(advice);
+      return robot.deployed_bus().WaitFor<verdict_t>(
+          [index](const verdict_t& verdict) {
+            return verdict.advisor == "driver" && verdict.attempt == index;
+          },
+          milliseconds(200));
+    };
+    std::optional<verdict_t> verdict;
+    for (int i = 0; i < 50 && !verdict; ++i) verdict = judged();
+    ASSERT_TRUE(verdict);
+    robot.advice_bus().Send(advice);
+    EXPECT_EQ(verdict->code == verdict_t::CODE_LATE, index == 20);
+  }
+}
+
+// What a gate decided about each request: its verdicts, by what they judged,
+// and the route it deployed last.
+struct Decided {
+  using Judged = std::tuple<std::string, std::int64_t, std::int64_t, int>;
+  std::map<Judged, verdict_t> verdicts;
+  Route last_route;
+  std::int64_t last_decision = 0;
+};
+using DecidedByRequest = std::map<std::int64_t, Decided>;
+
+void Add(const verdict_t& verdict, DecidedByRequest& decided) {
+  decided[verdict.request_id].verdicts.try_emplace(
+      {verdict.advisor, verdict.advisor_session, verdict.attempt,
+       verdict.candidate},
+      verdict);
+}
+
+void Add(const deployed_t& deployed, DecidedByRequest& decided) {
+  Decided& request = decided[deployed.request_id];
+  if (deployed.num_waypoints == 0 ||
+      deployed.decision < request.last_decision) {
+    return;
+  }
+  request.last_decision = deployed.decision;
+  request.last_route = bus::WaypointsOf(deployed);
+}
+
+DecidedByRequest DecidedIn(const logger::LogContents& log) {
+  DecidedByRequest decided;
+  for (const auto& [session, decisions] : log.decisions) {
+    for (const auto& [number, logged] : decisions) {
+      std::visit(
+          [&](const auto& message) {
+            Add(message, decided);
+          },
+          logged.message);
+    }
+  }
+  return decided;
+}
+
+DecidedByRequest DecidedBy(BusPeer& bus) {
+  DecidedByRequest decided;
+  for (const verdict_t& verdict : bus.Heard<verdict_t>()) Add(verdict, decided);
+  for (const deployed_t& deployed : bus.Heard<deployed_t>()) {
+    Add(deployed, decided);
+  }
+  return decided;
+}
+
+// Two advisors within 50 ms may be heard the other way round.
+bool MayHaveSwapped(const verdict_t& verdict, const Decided& request) {
+  return std::ranges::any_of(request.verdicts, [&](const auto& other) {
+    return other.second.advisor != verdict.advisor &&
+           std::abs(other.second.utime - verdict.utime) <= 50'000;
+  });
+}
+
+bool IsCheaper(std::int16_t code) {
+  return code == verdict_t::CODE_ACCEPTED || code == verdict_t::CODE_NOT_BEST;
+}
+
+bool SameCost(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+void ExpectSame(const Decided& recorded, const Decided& replayed) {
+  EXPECT_EQ(recorded.last_route, replayed.last_route);
+  EXPECT_EQ(recorded.verdicts.size(), replayed.verdicts.size());
+  for (const auto& [judged, verdict] : recorded.verdicts) {
+    const auto found = replayed.verdicts.find(judged);
+    ASSERT_NE(found, replayed.verdicts.end()) << verdict.advisor;
+    const verdict_t& again = found->second;
+    const bool swapped = IsCheaper(verdict.code) && IsCheaper(again.code) &&
+                         MayHaveSwapped(verdict, recorded);
+    EXPECT_TRUE(verdict.code == again.code || swapped)
+        << verdict.advisor << ": " << verdict.code << " and " << again.code;
+    EXPECT_TRUE(SameCost(verdict.candidate_cost, again.candidate_cost));
+    EXPECT_TRUE(SameCost(verdict.baseline_cost, again.baseline_cost));
+  }
+}
+
+// Plays a log's inputs into a verifier that hears nobody else.
+DecidedByRequest Replay(const std::string& log, std::int64_t session) {
+  const testing::TestBus buses;
+  BusPeer listener(buses.url());
+  // One bus for both, since a player speaks on one.
+  ChildProcess verifier({ProgramPath("terra-verifier"), "--lcm-url",
+                         buses.url(), "--advice-url", buses.url(),
+                         "--replay-session", std::to_string(session)});
+  EXPECT_TRUE(listener.WaitFor<status_t>([](const status_t& status) {
+    return status.status_name == "verifier";
+  }));
+  ChildProcess player({"lcm-logplayer", "-l", buses.url(), "-e", kInputs, log});
+  EXPECT_EQ(player.WaitForExit(std::chrono::minutes(1)), 0) << player.output();
+  DecidedByRequest decided = DecidedBy(listener);
+  EXPECT_EQ(verifier.Terminate(), 0);
+  return decided;
+}
+
+TEST(FlightRecorder, ARunIsAuditedCleanAndItsInputsReplayToTheSameDecisions) {
+  Robot robot(BarMap());
+  ChildProcess& logger = robot.Start("logger", {"--out", LogFolderOf(robot)});
+  ASSERT_TRUE(robot.WaitForReady("logger"));
+  StartDeployedPath(robot);
+  robot.Start("searcher", {"--backend", "search"});
+  robot.Start("cutter", {"--backend", "shortcut"});
+  ServeRequest(robot, 11, kBarStart, kBarGoal);
+  ServeRequest(robot, 12, {5, 100}, {155, 20});
+  ServeRequest(robot, 13, {20, 110}, {150, 110});
+  const auto deployed = robot.WaitForDeployed(13, deployed_t::MODE_CANDIDATE);
+  ASSERT_TRUE(deployed);
+  Drive(robot, *deployed);
+  ASSERT_EQ(logger.Terminate(), 0);
+  const std::string log = LogsOf(robot).at(0);
+  ExpectCleanAudit(log);
+
+  const logger::LogContents contents = Read(log);
+  const DecidedByRequest recorded = DecidedIn(contents);
+  ASSERT_EQ(contents.decisions.size(), 1U);
+  const DecidedByRequest replayed =
+      Replay(log, contents.decisions.begin()->first);
+  ASSERT_EQ(recorded.size(), 3U);
+  for (const auto& [request, decided] : recorded) {
+    SCOPED_TRACE(request);
+    EXPECT_FALSE(decided.last_route.empty());
+    EXPECT_GE(decided.verdicts.size(), 3U);
+    ASSERT_TRUE(replayed.contains(request));
+    ExpectSame(decided, replayed.at(request));
+  }
+}
+
+// 110 bytes each in the log.
+void SendPoses(Robot& robot, int count) {
+  for (int i = 0; i < count; ++i) {
+    pose_t pose{};
+    pose.pose_x = i;
+    robot.deployed_bus().Send(pose);
+    // What the smallest receive buffer of a kernel holds, and some time to
+    // read it.
+    if (i % 50 == 49) std::this_thread::sleep_for(milliseconds(2));
+  }
+}
+
+TEST(FlightRecorder, EachPartOfARotatedLogIsAuditedAlone) {
+  Robot robot(BarMap());
+  ChildProcess& logger =
+      robot.Start("logger", {"--out", LogFolderOf(robot), "--part-mb", "1"});
+  ASSERT_TRUE(robot.WaitForReady("logger"));
+  StartDeployedPath(robot);
+  robot.Start("searcher", {"--backend", "search"});
+  for (std::int64_t request = 11; request < 14; ++request) {
+    ASSERT_TRUE(robot.Ask(request, kBarStart, kBarGoal));
+    ASSERT_TRUE(robot.WaitForDeployed(request, deployed_t::MODE_CANDIDATE));
+    SendPoses(robot, 8'000);
+  }
+  ASSERT_EQ(logger.Terminate(), 0);
+  const std::vector<std::string> parts = LogsOf(robot);
+  ASSERT_GE(parts.size(), 3U);
+  std::int64_t poses = 0;
+  for (const std::string& part : parts) {
+    ExpectCleanAudit(part);
+    const logger::LogInfo info = InfoOf(part);
+    EXPECT_TRUE(info.intact() && info.closed) << part;
+    poses += info.channels.at("TERRA_POSE").events;
+  }
+  EXPECT_EQ(poses, 24'000);
+}
+
+TEST(FlightRecorder, AFloodOfAdviceIsNotRecordedAndCostsNoOtherMessage) {
+  Robot robot(BarMap());
+  ChildProcess& logger = robot.Start("logger", {"--out", LogFolderOf(robot)});
+  ASSERT_TRUE(robot.WaitForReady("logger"));
+  StartDeployedPath(robot);
+  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
+  std::atomic<bool> stop = false;
+  std::atomic<std::int64_t> sent = 0;
+  std::thread flood([&] {
+    advice_t advice{};
+    advice.advisor = "babbler";
+    for (; !stop; ++sent) {
+      advice.attempt = sent;
+      robot.advice_bus().Send(advice);
+    }
+  });
+  SendPoses(robot, 10'000);
+  stop = true;
+  flood.join();
+  ASSERT_EQ(logger.Terminate(), 0);
+  const std::string log = LogsOf(robot).at(0);
+  ExpectCleanAudit(log);
+  const logger::LogInfo info = InfoOf(log);
+  EXPECT_EQ(info.channels.at("TERRA_POSE").events, 10'000);
+  // 20 a second of one sender (DESIGN section 2).
+  const std::int64_t advice = info.channels.at("TERRA_ADVICE").events;
+  const double seconds =
+      1e-6 * static_cast<double>(info.last_us - info.first_us);
+  EXPECT_LE(static_cast<double>(advice), 20 * (seconds + 1));
+  EXPECT_GT(sent, 10 * advice);
+}
+
+TEST(FlightRecorder, WithoutAFolderToWriteToItEndsAndTheOthersServe) {
+  Robot robot(BarMap());
+  ChildProcess& logger = robot.Start("logger", {"--out", "/proc/no-such/log"});
+  EXPECT_EQ(logger.WaitForExit(BusPeer::kPatience), 1);
+  EXPECT_NE(logger.output().find("/proc/no-such/log"), std::string::npos)
+      << logger.output();
+  StartDeployedPath(robot);
+  robot.Start("searcher");
+  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
+  EXPECT_TRUE(robot.WaitForDeployed(11, deployed_t::MODE_CANDIDATE));
+}
+
+TEST(FlightRecorder, AFullDiskIsReportedAndTheOthersServe) {
+  Robot robot(BarMap());
+  const std::string disk = robot.folder().Path("disk");
+  std::filesystem::create_directories(disk);
+  const std::string mount = "mount -t tmpfs -o size=64k none " + disk;
+  if (std::system(("unshare -m sh -c '" + mount + "' 2>/dev/null").c_str()) !=
+      0) {
+    GTEST_SKIP() << "no permission to mount a small disk";
+  }
+  std::string start =
+      mount + " && exec " + ProgramPath("terra-logger") + " --out " + disk;
+  for (const std::string& option : robot.BusOptions()) {
+    start += " '" + option + "'";
+  }
+  ChildProcess logger({"unshare", "-m", "sh", "-c", start});
+  StartDeployedPath(robot);
+  SendPoses(robot, 2'000);
+  const auto failing =
+      robot.deployed_bus().WaitFor<status_t>([](const status_t& status) {
+        return status.status_name == "logger" &&
+               status.state.starts_with("failing");
+      });
+  ASSERT_TRUE(failing) << logger.output();
+  EXPECT_NE(failing->last_error.find("No space left"), std::string::npos);
+  robot.Start("searcher");
+  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
+  EXPECT_TRUE(robot.WaitForDeployed(11, deployed_t::MODE_CANDIDATE));
+  // What fitted is whole.
+  const std::string seen =
+      "/proc/" + std::to_string(logger.pid()) + "/root" + disk;
+  for (const auto& entry : std::filesystem::directory_iterator(seen)) {
+    const logger::LogInfo info = InfoOf(entry.path().string());
+    EXPECT_TRUE(info.intact());
+    EXPECT_GT(info.events, 10);
+  }
+  EXPECT_EQ(logger.Terminate(), 1);
+}
+
+}  // namespace
+}  // namespace terra

@@ -63,7 +63,7 @@ LlmReply OpenAiReply(const WireFormat& format, const json& line) {
   if (!error.is_null()) return Failed(ErrorText(format, error));
   const json& response = line.at("response");
   const json& body = response.at("body");
-  const int status = response.at("status_code").get<int>();
+  const int status = IntegerAt<int>(response, "status_code");
   if (status >= 200 && status < 300) return ReplyOf(format, body);
   LlmReply failed = Failed("HTTP " + std::to_string(status) + ": " +
                            ErrorText(format, MemberOf(body, "error")));

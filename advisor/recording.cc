@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "advisor/encoding.h"
+#include "advisor/wire_json.h"
 
 namespace terra::advisor {
 namespace {
@@ -157,7 +158,7 @@ Result<RecordedCall> ParseRecord(std::string_view text) {
     }
     RecordedCall call;
     call.request_hash = line.at("request_hash").get<std::string>();
-    call.repeat = line.at("repeat").get<int>();
+    call.repeat = IntegerAt<int>(line, "repeat");
     call.identity = {line.at("provider").get<std::string>(),
                      line.at("model_requested").get<std::string>(),
                      line.at("settings").get<std::string>(),
@@ -172,13 +173,13 @@ Result<RecordedCall> ParseRecord(std::string_view text) {
     reply.body = line.at("reply_body").get<std::string>();
     reply.model = line.at("model_returned").get<std::string>();
     reply.response_id = line.at("response_id").get<std::string>();
-    reply.usage = {line.at("tokens_in").get<std::int64_t>(),
-                   line.at("tokens_out").get<std::int64_t>(),
-                   line.at("tokens_thinking").get<std::int64_t>()};
+    reply.usage = {IntegerAt<std::int64_t>(line, "tokens_in"),
+                   IntegerAt<std::int64_t>(line, "tokens_out"),
+                   IntegerAt<std::int64_t>(line, "tokens_thinking")};
     if (!line.at("spend_usd").is_null()) {
       reply.spend_usd = line.at("spend_usd").get<double>();
     }
-    reply.tries = line.at("tries").get<int>();
+    reply.tries = IntegerAt<int>(line, "tries");
     reply.timed = !line.at("t_llm_s").is_null();
     if (reply.timed) reply.t_llm_s = line.at("t_llm_s").get<double>();
     reply.recorded_at = line.at("utc").get<std::string>();

@@ -11,6 +11,7 @@
 #include "advisor/encoding.h"
 #include "advisor/fingerprint.h"
 #include "advisor/pictures.h"
+#include "advisor/wire_json.h"
 #include "terrain/digest.h"
 #include "terrain/native_search.h"
 #include "terrain/route_cost.h"
@@ -81,9 +82,9 @@ Result<Legend> LegendFromJson(const json& rows) {
   std::vector<Terrain> terrains;
   for (const json& row : rows) {
     terrains.push_back(
-        {row.at("id").get<int>(), row.at("name").get<std::string>(),
+        {IntegerAt<int>(row, "id"), row.at("name").get<std::string>(),
          row.at("cost").is_null() ? kImpassable : row.at("cost").get<double>(),
-         FromRgb(row.at("color").get<std::uint32_t>())});
+         FromRgb(IntegerAt<std::uint32_t>(row, "color"))});
   }
   return Legend::Create(std::move(terrains));
 }
@@ -107,8 +108,8 @@ std::string PairLine(const ReferencePair& pair) {
 }
 
 Result<ReferencePair> PairFromJson(const json& line, const Legend& legend) {
-  const int width = line.at("width").get<int>();
-  const int height = line.at("height").get<int>();
+  const int width = IntegerAt<int>(line, "width");
+  const int height = IntegerAt<int>(line, "height");
   if (width < 1 || height < 1 || width > TerrainMap::kMaxSide ||
       height > TerrainMap::kMaxSide) {
     return Error{ErrorCode::kInvalid, "no such map size"};
@@ -123,7 +124,7 @@ Result<ReferencePair> PairFromJson(const json& line, const Legend& legend) {
   std::copy(bytes->begin(), bytes->end(), ids.data());
   auto map = TerrainMap::Create(std::move(ids), legend,
                                 {line.at("corner_cutting").get<bool>(),
-                                 line.at("clearance_cells").get<int>()});
+                                 IntegerAt<int>(line, "clearance_cells")});
   if (!map) return map.error();
   auto left = ParseRoute(line.at("left").get<std::string>());
   if (!left) return left.error();
@@ -131,7 +132,7 @@ Result<ReferencePair> PairFromJson(const json& line, const Legend& legend) {
   if (!right) return right.error();
   return ReferencePair{
       *std::move(map),
-      line.at("map_id").get<std::int64_t>(),
+      IntegerAt<std::int64_t>(line, "map_id"),
       *std::move(left),
       *std::move(right),
       {line.at("left_cost").get<double>(), line.at("right_cost").get<double>()},

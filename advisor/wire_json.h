@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,24 @@ inline const nlohmann::json& MemberOf(const nlohmann::json& object,
   if (!object.is_object()) return kNull;
   const auto at = object.find(key);
   return at == object.end() ? kNull : *at;
+}
+
+/// The member, which has to be a whole number that Int holds: `get<Int>()`
+/// converts fractions and numbers beyond Int silently, the latter undefined.
+/// Throws nlohmann::json::exception, as `at` does.
+template <typename Int, typename Json>
+Int IntegerAt(const Json& object, const char* key) {
+  const Json& value = object.at(key);
+  const bool fits =
+      value.is_number_unsigned()
+          ? std::in_range<Int>(value.template get<std::uint64_t>())
+          : value.is_number_integer() &&
+                std::in_range<Int>(value.template get<std::int64_t>());
+  if (!fits) {
+    throw nlohmann::json::other_error::create(
+        501, std::string(key) + " is no whole number in range", &value);
+  }
+  return value.template get<Int>();
 }
 
 inline std::string DataUri(const EncodedPicture& picture) {

@@ -15,6 +15,7 @@
 #include "advisor/batch_format.h"
 #include "advisor/llm_methods.h"
 #include "advisor/recording.h"
+#include "advisor/wire_json.h"
 #include "benchmark/llm_method.h"
 #include "benchmark/progress.h"
 #include "planner/coarse_lattice.h"
@@ -178,7 +179,7 @@ struct Results {
 };
 
 Status ReadBatchResults(const WireFormat& format, const std::string& path,
-                   Results& results) {
+                        Results& results) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorCode::kNotFound, path + ": no such file"};
   std::string line;
@@ -218,7 +219,7 @@ Result<std::vector<OpenRequest>> ReadOpenRequests(const std::string& folder) {
       requests.push_back(
           {line,
            json.at("request_hash").get<std::string>(),
-           json.at("repeat").get<int>(),
+           advisor::IntegerAt<int>(json, "repeat"),
            json.at("case_id").get<std::string>(),
            {json.at("provider").get<std::string>(),
             json.at("model_requested").get<std::string>(),

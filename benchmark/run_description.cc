@@ -9,6 +9,7 @@
 #include <sys/utsname.h>
 
 #include "advisor/encoding.h"
+#include "advisor/wire_json.h"
 #include "benchmark/parallel.h"
 #include "terrain/files/whole_file.h"
 
@@ -181,7 +182,7 @@ Result<RunDescription> ReadRunDescription(const std::string& path) {
   if (!text.ok()) return text.error();
   try {
     const auto document = ordered_json::parse(*text);
-    const int schema = document.at("schema").get<int>();
+    const int schema = advisor::IntegerAt<int>(document, "schema");
     if (schema != RunDescription::kSchema) {
       return Error{ErrorCode::kUnsupported,
                    path + ": schema " + std::to_string(schema) +

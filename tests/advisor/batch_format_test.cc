@@ -102,6 +102,17 @@ TEST(BatchFormat, AnyOtherLineIsAnError) {
   }
 }
 
+TEST(BatchFormat, AStatusThatIsNoIntIsAnError) {
+  const auto format = MakeWireFormat("openai");
+  for (const char* status :
+       {"4e45", "2147483648", "-2147483649", "200.5", "18446744073709551615",
+        "4444444444444444444444444444444444444444"}) {
+    const std::string line = R"({"custom_id":"a","response":{"status_code":)" +
+                             std::string(status) + R"(,"body":{}}})";
+    EXPECT_FALSE(ReadBatchResult(*format, line).ok()) << status;
+  }
+}
+
 TEST(BatchFormat, IdsAreWhatAllProvidersAccept) {
   const std::string id = BatchId(std::string(32, 'a'), 12);
   EXPECT_LE(id.size(), 64u);

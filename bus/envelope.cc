@@ -31,7 +31,9 @@ SenderTracker::Sender SenderTracker::Look(std::int64_t session,
                                           std::int64_t seq) {
   if (session == session_) {
     if (seq <= seq_) return Sender::kRepeated;
-    lost_ += seq - seq_ - 1;
+    // Unsigned, since a hostile seq may be any number.
+    lost_ +=
+        static_cast<std::uint64_t>(seq) - static_cast<std::uint64_t>(seq_) - 1;
     seq_ = seq;
     return Sender::kCurrent;
   }

@@ -68,14 +68,14 @@ class SenderTracker {
 
   std::int64_t session() const { return session_; }
   /// Messages of current sessions that never came, by gaps in seq.
-  std::int64_t lost() const { return lost_; }
+  std::uint64_t lost() const { return lost_; }
   /// Messages of replaced sessions.
   std::int64_t from_replaced() const { return from_replaced_; }
 
  private:
   std::int64_t session_ = 0;
   std::int64_t seq_ = 0;
-  std::int64_t lost_ = 0;
+  std::uint64_t lost_ = 0;
   std::int64_t from_replaced_ = 0;
   std::deque<std::int64_t> replaced_;
 };

@@ -16,7 +16,9 @@
 #include "bus/wire.h"
 
 /// The channel and layout of every message type, field by field as in
-/// lcmtypes/; tests/bus/golden holds one encoded message of each.
+/// lcmtypes/; tests/bus/golden holds one encoded message of each. Names are
+/// bounded (kMaxNameBytes): the gate repeats an advisor's and a planner's, and
+/// what it says has to fit a message whatever they call themselves.
 namespace terra::bus {
 
 // Declares the traits of one type.
@@ -32,12 +34,12 @@ TERRA_MESSAGE(map_header_t, kMapHeader,
 TERRA_MESSAGE(map_tile_t, kMapTile, "lll N1024 i*l*i* N20000 b*")
 TERRA_MESSAGE(map_request_t, kMapRequest, "lll l N4096 i*")
 TERRA_MESSAGE(plan_request_t, kPlanRequest, "lll l b l iiii")
-TERRA_MESSAGE(baseline_t, kBaseline, "lll l iiii l s b l N2048 i*i* d lll")
+TERRA_MESSAGE(baseline_t, kBaseline, "lll l iiii l s63 b l N2048 i*i* d lll")
 TERRA_MESSAGE(advice_t, kAdvice,
-              "lll lll ll iii ssss l i l bbb N2048 i*i* ss ll d ll s")
-TERRA_MESSAGE(verdict_t, kVerdict, "lll l b lll ll iii s ll i h ddd l iii l")
+              "lll lll ll iii s63s63s63s63 l i l bbb N2048 i*i* ss ll d ll s")
+TERRA_MESSAGE(verdict_t, kVerdict, "lll l b lll ll iii s63 ll i h ddd l iii l")
 TERRA_MESSAGE(deployed_t, kDeployed,
-              "lll ll l iiii ll bb s ll i N2048 i*i* i N40000 b* dd")
+              "lll ll l iiii ll bb s63 ll i N2048 i*i* i N40000 b* dd")
 TERRA_MESSAGE(pose_t, kPose, "lll ii dd ll")
 TERRA_MESSAGE(status_t, kStatus, "lll ss i ss N64 s*l* s")
 TERRA_MESSAGE(config_t, kConfig, "lll sss")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 
 namespace terra::bus {
 namespace {
@@ -30,11 +31,14 @@ class Walker {
     return value;
   }
 
-  bool SkipString() {
+  bool SkipString(std::int32_t limit) {
     if (left() < 4) return false;
     const auto length =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(Unsigned(4)));
-    if (length < 1 || static_cast<std::size_t>(length) > left()) return false;
+    if (length < 1 || static_cast<std::size_t>(length) > left() ||
+        length - 1 > limit) {
+      return false;
+    }
     const auto text = bytes_.subspan(at_, static_cast<std::size_t>(length));
     at_ += text.size();
     // The length counts the zero at the end, which must be the only one.
@@ -45,6 +49,26 @@ class Walker {
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;
 };
+
+// One field of a layout.
+struct Field {
+  char kind = ' ';
+  std::int32_t limit = std::numeric_limits<std::int32_t>::max();
+  bool repeated = false;
+};
+
+// Reads the field at a place in the layout and moves past it.
+Field NextField(std::string_view layout, std::size_t& at) {
+  Field field;
+  field.kind = layout[at++];
+  if (at < layout.size() && std::isdigit(layout[at]) != 0) field.limit = 0;
+  while (at < layout.size() && std::isdigit(layout[at]) != 0) {
+    field.limit = field.limit * 10 + (layout[at++] - '0');
+  }
+  field.repeated = at < layout.size() && layout[at] == '*';
+  if (field.repeated) ++at;
+  return field;
+}
 
 std::size_t FieldSize(char kind) {
   switch (kind) {
@@ -62,21 +86,12 @@ std::size_t FieldSize(char kind) {
   }
 }
 
-bool SkipField(Walker& walker, char kind, std::size_t count) {
-  if (kind != 's') return walker.Skip(count, FieldSize(kind));
+bool SkipField(Walker& walker, const Field& field, std::size_t count) {
+  if (field.kind != 's') return walker.Skip(count, FieldSize(field.kind));
   for (std::size_t i = 0; i < count; ++i) {
-    if (!walker.SkipString()) return false;
+    if (!walker.SkipString(field.limit)) return false;
   }
   return true;
-}
-
-// Reads the digits after an N of the layout and moves past them.
-std::int32_t LimitAt(std::string_view layout, std::size_t& at) {
-  std::int32_t limit = 0;
-  while (at < layout.size() && std::isdigit(layout[at]) != 0) {
-    limit = limit * 10 + (layout[at++] - '0');
-  }
-  return limit;
 }
 
 }  // namespace
@@ -90,24 +105,19 @@ Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
   }
   std::size_t count = 0;
   for (std::size_t at = 0; at < layout.size();) {
-    const char kind = layout[at++];
-    if (kind == ' ') continue;
-    if (kind == 'N') {
-      const std::int32_t limit = LimitAt(layout, at);
+    const Field field = NextField(layout, at);
+    if (field.kind == ' ') continue;
+    if (field.kind == 'N') {
       if (walker.left() < 4) return Malformed("truncated");
       const auto value = static_cast<std::int32_t>(
           static_cast<std::uint32_t>(walker.Unsigned(4)));
-      if (value < 0 || value > limit) {
+      if (value < 0 || value > field.limit) {
         return Malformed("count " + std::to_string(value) + ", at most " +
-                         std::to_string(limit));
+                         std::to_string(field.limit));
       }
       count = static_cast<std::size_t>(value);
-      continue;
-    }
-    const bool repeated = at < layout.size() && layout[at] == '*';
-    if (repeated) ++at;
-    if (!SkipField(walker, kind, repeated ? count : 1)) {
-      return Malformed("truncated, or a bad string");
+    } else if (!SkipField(walker, field, field.repeated ? count : 1)) {
+      return Malformed("truncated, or a bad or too long string");
     }
   }
   if (walker.left() != 0) {

@@ -15,8 +15,9 @@ namespace terra::bus {
 /// The channel and layout of a message type; specialised in bus/messages.h.
 ///
 /// A layout lists the fields in order, blanks are free: l int64, i int32,
-/// h int16, b int8 or byte, d double, s string; N512 is a count (int32) of at
-/// most 512, and a star after a field repeats it by the last count.
+/// h int16, b int8 or byte, d double, s string, s63 a string of at most 63
+/// bytes; N512 is a count (int32) of at most 512, and a star after a field
+/// repeats it by the last count.
 template <typename T>
 struct MessageTraits;
 

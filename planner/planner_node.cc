@@ -156,7 +156,8 @@ std::string PlannerNode::state() const {
 void PlannerNode::AddCounters(bus::Counters& counters) const {
   Node::AddCounters(counters);
   counters.emplace_back("plans", plans_);
-  counters.emplace_back("lost", map_.sender().lost() + gate_.lost());
+  counters.emplace_back(
+      "lost", static_cast<std::int64_t>(map_.sender().lost() + gate_.lost()));
   counters.emplace_back("from_replaced_map_server",
                         map_.sender().from_replaced());
   counters.emplace_back("from_replaced_gate", gate_.from_replaced());

@@ -28,12 +28,10 @@ std::optional<std::int64_t> Distance(Cell a, Cell b) {
 
 void DrivenRoute::Follow(const Route& waypoints) {
   CellPath cells = RasterizeRoute(waypoints);
-  const std::size_t driven = place_ + 1;
-  const bool shared =
-      cells.size() >= driven && cells_.size() >= driven &&
-      std::equal(cells.begin(), cells.begin() + static_cast<long>(driven),
-                 cells_.begin());
-  if (!shared) {
+  const auto parting =
+      std::mismatch(cells.begin(), cells.end(), cells_.begin(), cells_.end());
+  const auto shared = static_cast<std::size_t>(parting.first - cells.begin());
+  if (shared <= place_) {
     place_ = 0;
     on_route_ = true;
   }
@@ -64,8 +62,9 @@ void DrivenRoute::OnPose(Cell pose) {
 }
 
 bool DrivenRoute::Passed(int index) const {
-  return !on_route_ || index < 0 || static_cast<std::size_t>(index) < place_ ||
-         static_cast<std::size_t>(index) >= cells_.size();
+  // Below 0 it becomes larger than any size.
+  const auto at = static_cast<std::size_t>(index);
+  return !on_route_ || at < place_ || at >= cells_.size();
 }
 
 Cell DrivenRoute::cell(int index) const {

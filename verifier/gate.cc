@@ -87,8 +87,8 @@ Decisions Gate::On(const BaselineEvent& event) {
   baseline_ = HeldBaseline{event, CheckBaseline(event)};
   if (!baseline_valid()) {
     OnBadBaseline(out);
-  } else if (!deployed_.has_route() ||
-             StrictlyCheaper(baseline_->check.cost, deployed_.cost)) {
+  } else if (StrictlyCheaper(baseline_->check.cost, deployed_.cost)) {
+    // A route that is not there costs infinity.
     DeployBaseline(Cause::kNewBaseline, out);
   }
   return out;
@@ -204,7 +204,6 @@ Decisions Gate::On(const MapEvent& event) {
   replaced_maps_.Add(map_id_);
   map_ = event.map;
   map_id_ = event.map_id;
-  if (request_.id == 0 || request_.cancelled) return out;
   RecheckBaseline(out);
   RecheckDeployed(out);
   return out;
@@ -246,11 +245,12 @@ void Gate::RecheckDeployed(Decisions& out) {
     return;
   }
   // A candidate has to be strictly cheaper again; a deployed baseline only not
-  // dearer than the one held now, which may be itself.
+  // dearer than the one held now, which may be itself. A route that is blocked
+  // costs infinity and is neither.
   const double baseline_cost = baseline_->check.cost;
   const bool worth_it = candidate ? StrictlyCheaper(check.cost, baseline_cost)
                                   : !StrictlyCheaper(baseline_cost, check.cost);
-  if (check.feasible() && worth_it) {
+  if (worth_it) {
     KeepOnNewMap(check.cost, out);
   } else {
     DeployBaseline(

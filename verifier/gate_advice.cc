@@ -66,6 +66,7 @@ bool Gate::InForce(std::int64_t session, std::int64_t route_seq) const {
          route_seq == deployed_.route_seq && deployed_.has_route();
 }
 
+// Without a map there is no baseline.
 std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
   if (event.request_id != request_.id || request_.id == 0) {
     return replaced_requests_.Has(event.request_id)
@@ -73,7 +74,7 @@ std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
                : std::nullopt;
   }
   if (request_.cancelled) return Code::kStaleRequest;
-  if (map_ == nullptr || event.map_id != map_id_) {
+  if (event.map_id != map_id_) {
     return replaced_maps_.Has(event.map_id) ? std::optional(Code::kStaleMap)
                                             : std::nullopt;
   }

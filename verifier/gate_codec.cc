@@ -60,9 +60,7 @@ AdviceEvent ToEvent(const advice_t& message) {
   event.anchor =
       Anchor{message.anchor_session, message.anchor_route_seq,
              message.anchor_index, Cell{message.anchor_x, message.anchor_y}};
-  const bool known = message.kind >= advice_t::KIND_RETAIN &&
-                     message.kind <= advice_t::KIND_FAILED;
-  event.kind = known ? AdviceKind{message.kind} : AdviceKind::kNone;
+  event.kind = AdviceKind{message.kind};  // any byte: the gate looks at it
   event.waypoints = bus::WaypointsOf(message);
   return event;
 }

@@ -58,7 +58,7 @@ void VerifierNode::OnAdviceBytes(std::span<const std::uint8_t> bytes,
     Decide(ToEvent(*message), now);
   } else {
     ++malformed_advice_;
-    last_error_ = "advice: " + message.error().message;
+    advice_error_ = "advice: " + message.error().message;
   }
 }
 
@@ -123,8 +123,9 @@ std::string VerifierNode::state() const {
   return "ready";
 }
 
+// What an advisor said wrong hides nothing that is wrong with the map.
 std::string VerifierNode::last_error() const {
-  return last_error_.empty() ? map_.last_error() : last_error_;
+  return map_.last_error().empty() ? advice_error_ : map_.last_error();
 }
 
 void VerifierNode::AddCounters(bus::Counters& counters) const {
@@ -139,7 +140,8 @@ void VerifierNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("other_baselines", gate.other_baselines);
   counters.emplace_back("other_poses", gate.other_poses);
   counters.emplace_back("malformed_advice", malformed_advice_);
-  counters.emplace_back("lost", map_.sender().lost() + planner_.lost());
+  counters.emplace_back("lost", static_cast<std::int64_t>(map_.sender().lost() +
+                                                          planner_.lost()));
   counters.emplace_back("from_replaced_planner", planner_.from_replaced());
   if (receiver_ != nullptr) {
     const bus::AdviceReceiver::Counters& bus = receiver_->counters();

@@ -54,7 +54,7 @@ class VerifierNode : public bus::Node {
   terra_msg::deployed_t deployed_message_{};
   const bus::AdviceReceiver* receiver_ = nullptr;
   std::int64_t malformed_advice_ = 0;
-  std::string last_error_;
+  std::string advice_error_;
 };
 
 }  // namespace terra::verifier

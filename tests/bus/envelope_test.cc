@@ -1,5 +1,7 @@
 #include "bus/envelope.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace terra::bus {
@@ -35,13 +37,24 @@ TEST(SenderTrackerTest, GapsInSeqAreCounted) {
   tracker.Look(7, 1);
   tracker.Look(7, 2);
   tracker.Look(7, 6);
-  EXPECT_EQ(tracker.lost(), 3);
+  EXPECT_EQ(tracker.lost(), 3u);
 }
 
 TEST(SenderTrackerTest, JoiningLateIsNoLoss) {
   SenderTracker tracker;
   tracker.Look(7, 1000);
-  EXPECT_EQ(tracker.lost(), 0);
+  EXPECT_EQ(tracker.lost(), 0u);
+}
+
+TEST(SenderTrackerTest, AnySeqIsTaken) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  SenderTracker tracker;
+  for (const std::int64_t session : {7, 8}) {
+    EXPECT_EQ(tracker.Look(session, kLeast), Sender::kTookOver);
+    EXPECT_EQ(tracker.Look(session, kMost), Sender::kCurrent);
+    EXPECT_EQ(tracker.Look(session, kMost), Sender::kRepeated);
+  }
 }
 
 TEST(RandomIdTest, IsNeverZeroAndDiffers) {

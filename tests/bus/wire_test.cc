@@ -148,6 +148,20 @@ TEST(CheckLayoutTest, AStringEndsWithItsOnlyZero) {
   EXPECT_FALSE(Fits("s", {0, 0, 0, 3, 0, 'b', 0}));
 }
 
+TEST(CheckLayoutTest, AStringMayReachItsLimitAndNoMore) {
+  EXPECT_TRUE(Fits("s2 b", {0, 0, 0, 3, 'a', 'b', 0, 9}));
+  EXPECT_FALSE(Fits("s2 b", {0, 0, 0, 4, 'a', 'b', 'c', 0, 9}));
+  EXPECT_TRUE(Fits("N9 s2*", {0, 0, 0, 1, 0, 0, 0, 1, 0}));
+}
+
+TEST(DecodeTest, NamesAreBounded) {
+  terra_msg::verdict_t verdict{};
+  verdict.advisor.assign(kMaxNameBytes, 'x');
+  EXPECT_TRUE(Decode<terra_msg::verdict_t>(Encode(verdict)).ok());
+  verdict.advisor += 'x';
+  EXPECT_THROW(Encode(verdict), std::logic_error);
+}
+
 TEST(EncodeTest, MoreThanALayoutAllowsIsABugOfOurs) {
   terra_msg::map_request_t message{};
   message.num_missing = 4097;

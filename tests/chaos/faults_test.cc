@@ -20,6 +20,7 @@
 #include "terrain/digest.h"
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
+#include "tests/support/map_messages.h"
 #include "verifier/verifier_node.h"
 
 namespace terra::chaos {
@@ -285,7 +286,7 @@ class Gate : public bus::Transport {
     header.session = 4;
     header.seq = 1;
     Hear(header);
-    Hear(Tiles(*map));
+    Hear(testing::AllTiles(map->map));
     for (const std::int64_t request : {10, 11}) {
       Hear(PlannedBaseline(*map, request));
     }
@@ -310,26 +311,6 @@ class Gate : public bus::Transport {
   }
 
  private:
-  static terra_msg::map_tile_t Tiles(const bus::MapInForce& map) {
-    const TileGrid grid =
-        bus::ReadMapHeader(bus::MakeMapHeader(map.map)).value().grid;
-    const auto digests = TileDigests(map.map.ids(), grid);
-    terra_msg::map_tile_t tiles{};
-    tiles.session = 4;
-    tiles.seq = 1;
-    for (int index = 0; index < grid.count(); ++index) {
-      const auto frame =
-          bus::CompressTile(ExtractTile(map.map.ids(), grid, index));
-      tiles.tile_index.push_back(index);
-      tiles.tile_digest.push_back(digests[static_cast<std::size_t>(index)]);
-      tiles.tile_size.push_back(static_cast<std::int32_t>(frame.size()));
-      tiles.tile_data.insert(tiles.tile_data.end(), frame.begin(), frame.end());
-    }
-    tiles.num_tiles = grid.count();
-    tiles.num_bytes = static_cast<std::int32_t>(tiles.tile_data.size());
-    return tiles;
-  }
-
   template <typename T>
   void Hear(const T& message) {
     node_.Receive({bus::MessageTraits<T>::kChannel, bus::Encode(message)},

@@ -63,6 +63,7 @@ class VirtualNetwork {
     explicit Port(VirtualNetwork& network) : network_(network) {}
     bool Publish(bus::Channel channel,
                  std::span<const std::uint8_t> bytes) override {
+      if (bytes.size() > bus::kMaxMessageBytes) return false;
       network_.Publish(this, channel, {bytes.begin(), bytes.end()});
       return true;
     }

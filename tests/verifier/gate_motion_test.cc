@@ -165,6 +165,13 @@ TEST(GateMotionTest, PosesOnAnotherRouteDoNotCount) {
             Code::kAccepted);
 }
 
+TEST(GateMotionTest, PosesWithoutARouteDoNotCount) {
+  GateHarness h;
+  h.Request(1);
+  h.Pose({3, 1});
+  EXPECT_EQ(h.gate.counters().other_poses, 1);
+}
+
 TEST(GateMotionTest, ARobotOffTheRouteGetsNoAdvice) {
   GateHarness h = Ready();
   h.Pose({10, 40});
@@ -202,6 +209,17 @@ TEST(GateMotionTest, AWholeRouteOverTheLimitsIsRefused) {
             Code::kWorkLimit);
   tail.erase(tail.begin(), tail.begin() + 10);
   EXPECT_EQ(CodeOf(h.gate.On(h.AdviceFrom(20, cells[20], tail))),
+            Code::kAccepted);
+}
+
+// Its route is withdrawn with the old request, also where the same one is
+// deployed for the next at once.
+TEST(GateMotionTest, ANewRequestFindsTheRobotAtItsStart) {
+  GateHarness h = Ready();
+  h.Pose({10, 1});
+  h.request_id = 2;
+  EXPECT_EQ(DeploymentsOf(h.Baseline(kStraight)).size(), 2u);
+  EXPECT_EQ(CodeOf(h.Advise({{0, 1}, {1, 0}, {28, 0}, {29, 1}})),
             Code::kAccepted);
 }
 

@@ -15,7 +15,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "terrain/digest.h"
-#include "tests/support/random_map.h"
+#include "tests/verifier/gate_oracle.h"
 #include "tests/verifier/gate_trace.h"
 
 namespace terra::verifier {
@@ -62,11 +62,6 @@ const Verdict* AdviceVerdict(const Turn& turn) {
 bool Accepted(const Turn& turn) {
   const Verdict* verdict = AdviceVerdict(turn);
   return verdict != nullptr && verdict->code == Code::kAccepted;
-}
-
-OracleCheck CheckDeployed(const Observed& now) {
-  return OracleCheckRoute(*now.map, now.deployed.waypoints, now.deployed.start,
-                          now.deployed.goal);
 }
 
 bool SameCost(double a, const ExactCost& b) {
@@ -244,52 +239,6 @@ RC_GTEST_PROP(GatePropertyTest, AnInvalidBaselineIsReportedOnce, ()) {
 
 // ---- Invariant 9: the verdict is exactly the oracle's. ----
 
-bool SpeaksOfWhatIsInForce(const Observed& now, const AdviceEvent& advice) {
-  return advice.request_id != 0 && !now.cancelled() && now.map != nullptr &&
-         advice.request_id == now.deployed.request_id &&
-         advice.map_id == now.map_id && now.baseline &&
-         advice.baseline_digest == now.baseline->baseline_digest;
-}
-
-bool AnchorIsAhead(const Observed& now, const Anchor& anchor) {
-  const bool named = anchor.session == kTraceOptions.session &&
-                     anchor.route_seq == now.deployed.route_seq;
-  return (anchor.index == 0 || named) && now.on_route &&
-         anchor.index >= static_cast<int>(now.place) &&
-         anchor.index < static_cast<int>(now.cells.size());
-}
-
-// The cells up to the anchor, then those of the candidate.
-std::vector<Cell> Joined(const Observed& now, const AdviceEvent& advice) {
-  std::vector<Cell> cells(now.cells.begin(),
-                          now.cells.begin() + advice.anchor.index);
-  for (const Cell& cell : OracleCells(*now.map, advice.waypoints)) {
-    cells.push_back(cell);
-  }
-  if (cells.size() == 1) cells.push_back(cells.front());
-  return cells;
-}
-
-Code OracleVerdict(const Observed& now, const AdviceEvent& advice) {
-  if (!now.baseline_valid()) return Code::kBaselineInvalid;
-  if (!AnchorIsAhead(now, advice.anchor)) return Code::kLate;
-  if (advice.kind == AdviceKind::kRetain) return Code::kRetained;
-  if (advice.kind == AdviceKind::kMalformed) return Code::kParseError;
-  const Cell anchor = now.cells[static_cast<std::size_t>(advice.anchor.index)];
-  if (advice.anchor.cell != anchor) return Code::kStartMismatch;
-  const OracleCheck check =
-      OracleCheckRoute(*now.map, advice.waypoints, anchor, now.deployed.goal);
-  if (!check.feasible()) return check.code;
-  const ExactCost whole =
-      OracleCheckRoute(*now.map, Joined(now, advice), now.deployed.start,
-                       now.deployed.goal)
-          .cost;
-  if (!ExactlyCheaper(whole, now.baseline_check.cost)) return Code::kNotCheaper;
-  // The way up to the anchor is shared: comparing the wholes compares the rest.
-  return ExactlyCheaper(whole, CheckDeployed(now).cost) ? Code::kAccepted
-                                                        : Code::kNotBest;
-}
-
 // With the way up to the anchor, advice close to the waypoint limit may come to
 // lie above it; gate_motion_test has the exact limit.
 bool MayExceedLimit(const AdviceEvent& advice) {
@@ -337,55 +286,6 @@ RC_GTEST_PROP(GatePropertyTest, EachVerdictIsTheOracles, ()) {
           OracleCells(*turn.before.map, Joined(turn.before, *advice));
       RC_ASSERT(joined);
     }
-  }
-}
-
-// ---- The sequences reach what they are meant to test. ----
-
-TEST(GateTraceTest, SequencesReachEveryModeCauseAndCode) {
-  std::map<std::string, int> seen;
-  testing::Random bits(1);
-  for (int i = 0; i < 3'000; ++i) {
-    std::vector<std::uint32_t> random;
-    for (int k = 0; k < 50; ++k) {
-      random.push_back(static_cast<std::uint32_t>(bits.Int(0, 2'000'000'000)));
-    }
-    for (const Turn& turn : PlayTrace(random)) {
-      for (const Decision& decision : turn.decisions) {
-        if (const auto* verdict = std::get_if<Verdict>(&decision)) {
-          ++seen[std::string(CodeName(verdict->code)) +
-                 (verdict->subject == Subject::kBaseline ? " baseline" : "")];
-          if (verdict->code == Code::kAccepted && verdict->anchor.index > 0) {
-            ++seen["accepted ahead"];
-          }
-        } else {
-          const auto& deployed = std::get<Deployed>(decision);
-          ++seen["mode " + std::to_string(static_cast<int>(deployed.mode))];
-          ++seen["cause " + std::to_string(static_cast<int>(deployed.cause))];
-        }
-      }
-    }
-  }
-  for (const auto& [what, times] : seen) {
-    RecordProperty(what, times);
-  }
-  for (int mode = 0; mode <= 3; ++mode) {
-    EXPECT_GE(seen["mode " + std::to_string(mode)], 10) << mode;
-  }
-  for (int cause = 1; cause <= 9; ++cause) {
-    EXPECT_GE(seen["cause " + std::to_string(cause)], 10) << cause;
-  }
-  for (const char* code : {"accepted",          "accepted ahead",
-                           "retained",          "parse_error",
-                           "too_few_waypoints", "start_mismatch",
-                           "goal_mismatch",     "out_of_bounds",
-                           "obstacle",          "work_limit",
-                           "not_cheaper",       "not_best",
-                           "stale_request",     "stale_map",
-                           "stale_baseline",    "baseline_invalid",
-                           "malformed_message", "late",
-                           "obstacle baseline", "malformed_message baseline"}) {
-    EXPECT_GE(seen[code], 10) << code;
   }
 }
 

@@ -217,7 +217,7 @@ class Player {
     turn.before = now_;
     turn.decisions = verifier::Feed(gate_, event);
     turn.repeat = NoteAdvice(turn);
-    Observe(event);
+    Observe(turn);
     turn.after = now_;
     turns_.push_back(std::move(turn));
   }
@@ -233,7 +233,8 @@ class Player {
     return repeat;
   }
 
-  void Observe(const Event& event) {
+  void Observe(const Turn& turn) {
+    const Event& event = turn.event;
     const Deployed before = std::exchange(now_.deployed, gate_.deployed());
     if (const auto* map = std::get_if<MapEvent>(&event)) {
       now_.map = map->map;
@@ -253,22 +254,31 @@ class Player {
       }
     }
     if (now_.baseline) CheckBaseline();
-    ObserveRobot(event);
+    ObserveRobot(turn);
   }
 
   // On maps this small the window of DrivenRoute is the whole rest of a route
   // of ordinary length; routes that are longer do not arise.
-  void ObserveRobot(const Event& event) {
-    if (const auto* pose = std::get_if<PoseEvent>(&event)) {
-      if (pose->session == kTraceOptions.session && now_.deployed.has_route() &&
-          pose->route_seq == now_.deployed.route_seq) {
-        ObservePose(pose->cell);
-      }
-      return;
+  void ObserveRobot(const Turn& turn) {
+    const auto* pose = std::get_if<PoseEvent>(&turn.event);
+    if (pose != nullptr && pose->session == kTraceOptions.session &&
+        now_.deployed.has_route() &&
+        pose->route_seq == now_.deployed.route_seq) {
+      ObservePose(pose->cell);
     }
+    // One by one: a route that is withdrawn takes the robot's place with it,
+    // also where the next one is there at once.
+    for (const Decision& decision : turn.decisions) {
+      if (const auto* deployed = std::get_if<Deployed>(&decision)) {
+        ObserveRoute(*deployed);
+      }
+    }
+  }
+
+  void ObserveRoute(const Deployed& deployed) {
     std::vector<Cell> cells;
-    if (now_.deployed.has_route()) {
-      cells = OracleCells(*now_.map, now_.deployed.waypoints);
+    if (deployed.has_route()) {
+      cells = OracleCells(*now_.map, deployed.waypoints);
     }
     bool shared = now_.place < cells.size() && now_.place < now_.cells.size();
     for (std::size_t i = 0; shared && i <= now_.place; ++i) {

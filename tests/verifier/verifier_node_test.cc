@@ -1,0 +1,341 @@
+// The gate's shell: what it takes off the bus, what it says and how often. The
+// decisions are Gate's and tested there.
+#include "verifier/verifier_node.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bus/codec.h"
+#include "terrain/digest.h"
+#include "terrain/segment.h"
+#include "tests/support/map_messages.h"
+#include "tests/verifier/gate_field.h"
+
+namespace terra::verifier {
+namespace {
+
+using std::chrono::milliseconds;
+using terra_msg::advice_t;
+using terra_msg::baseline_t;
+using terra_msg::deployed_t;
+using terra_msg::plan_request_t;
+using terra_msg::pose_t;
+using terra_msg::verdict_t;
+
+constexpr Cell kStart = {0, 1};
+constexpr Cell kGoal = {5, 1};
+constexpr std::int64_t kSession = 4711;
+
+// A node, what it says, and the others' messages about the request from kStart
+// to kGoal on Field().
+class VerifierNodeTest : public ::testing::Test, public bus::Transport {
+ protected:
+  bool Publish(bus::Channel channel,
+               std::span<const std::uint8_t> bytes) override {
+    if (bytes.size() > bus::kMaxMessageBytes) return false;
+    if (channel == bus::Channel::kVerdict) {
+      verdicts_.push_back(bus::Decode<verdict_t>(bytes).value());
+    } else if (channel == bus::Channel::kDeployed) {
+      deployed_.push_back(bus::Decode<deployed_t>(bytes).value());
+    }
+    return true;
+  }
+
+  template <typename T>
+  void Hear(const T& message) {
+    node_.Receive({bus::MessageTraits<T>::kChannel, bus::Encode(message)},
+                  now_);
+  }
+  void HearMap() {
+    terra_msg::map_header_t header = bus::MakeMapHeader(Field());
+    header.session = 4;
+    header.seq = 1;
+    Hear(header);
+    Hear(testing::AllTiles(Field()));
+  }
+
+  static plan_request_t RequestOf(std::int64_t id, std::int8_t action) {
+    plan_request_t request{};
+    request.request_id = id;
+    request.action = action;
+    request.start_x = kStart.x;
+    request.start_y = kStart.y;
+    request.goal_x = kGoal.x;
+    request.goal_y = kGoal.y;
+    return request;
+  }
+
+  baseline_t BaselineOf(std::int64_t request, const Route& route) {
+    baseline_t baseline{};
+    baseline.session = 500;
+    baseline.seq = ++baseline_seq_;
+    baseline.planner = "planner";
+    baseline.request_id = request;
+    baseline.start_x = kStart.x;
+    baseline.start_y = kStart.y;
+    baseline.goal_x = kGoal.x;
+    baseline.goal_y = kGoal.y;
+    baseline.map_id = map_id_;
+    baseline.status = baseline_t::STATUS_OK;
+    bus::SetWaypoints(baseline, route);
+    baseline.baseline_digest = BaselineDigest(request, map_id_, route);
+    return baseline;
+  }
+
+  advice_t AdviceOf(const Route& route) {
+    advice_t advice{};
+    advice.session = 900;
+    advice.advisor = "search";
+    advice.attempt = ++attempt_;
+    advice.candidate = 1;
+    advice.request_id = 1;
+    advice.map_id = map_id_;
+    advice.baseline_digest = BaselineDigest(1, map_id_, kStraight);
+    advice.anchor_x = kStart.x;
+    advice.anchor_y = kStart.y;
+    advice.kind = advice_t::KIND_PROPOSE;
+    bus::SetWaypoints(advice, route);
+    return advice;
+  }
+  // As LCM itself encodes it, with no look at the limits.
+  void Advise(const advice_t& advice) {
+    std::vector<std::uint8_t> bytes(
+        static_cast<std::size_t>(advice.getEncodedSize()));
+    advice.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    node_.OnAdviceBytes(bytes, now_);
+  }
+  Code CodeFor(const advice_t& advice) {
+    verdicts_.clear();
+    Advise(advice);
+    return verdicts_.size() == 1 ? static_cast<Code>(verdicts_[0].code)
+                                 : Code::kNotChecked;
+  }
+
+  // The straight baseline of request 1 is deployed.
+  void GetReady() {
+    HearMap();
+    Hear(BaselineOf(1, kStraight));
+    ASSERT_EQ(deployed_.back().mode, deployed_t::MODE_BASELINE);
+  }
+
+  std::int64_t Counter(const std::string& name) const {
+    bus::Counters counters;
+    node_.AddCounters(counters);
+    for (const auto& [counter, value] : counters) {
+      if (counter == name) return value;
+    }
+    ADD_FAILURE() << "no counter " << name;
+    return -1;
+  }
+
+  bus::Time now_{std::chrono::hours(1)};
+  std::int64_t map_id_ = MapId(Field());
+  std::int64_t baseline_seq_ = 0;
+  std::int64_t attempt_ = 0;
+  std::vector<verdict_t> verdicts_;
+  std::vector<deployed_t> deployed_;
+  bus::Outbox out_{*this, kSession};
+  VerifierNode node_{{}, out_};
+};
+
+TEST_F(VerifierNodeTest, SaysWhatIsDeployedAtOnceAndThenFiveTimesASecond) {
+  HearMap();
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  Hear(BaselineOf(1, kStraight));
+  ASSERT_EQ(deployed_.size(), 2u);
+  EXPECT_EQ(deployed_[0].mode, deployed_t::MODE_NONE);
+  EXPECT_EQ(deployed_[1].mode, deployed_t::MODE_BASELINE);
+  EXPECT_EQ(node_.Advance(now_), now_ + milliseconds(200));
+  EXPECT_EQ(deployed_.size(), 2u) << "just said";
+  for (int i = 0; i < 5; ++i) {
+    now_ += milliseconds(200);
+    node_.Advance(now_);
+  }
+  ASSERT_EQ(deployed_.size(), 7u);
+  EXPECT_EQ(deployed_.back().route_seq, deployed_[1].route_seq);
+  EXPECT_EQ(deployed_.back().seq, 7);
+}
+
+TEST_F(VerifierNodeTest, SaysNothingBeforeThereIsARequest) {
+  HearMap();
+  EXPECT_EQ(node_.Advance(now_), bus::kNever);
+  now_ += milliseconds(500);
+  node_.Advance(now_);
+  EXPECT_TRUE(deployed_.empty());
+}
+
+TEST_F(VerifierNodeTest, ARouteIsSaidByWaypointsAndByCells) {
+  GetReady();
+  Advise(AdviceOf(kTop));
+  const deployed_t& said = deployed_.back();
+  EXPECT_EQ(bus::WaypointsOf(said), kTop);
+  const auto cells = bus::DecodeChain(kStart, {said.num_steps, said.chain});
+  ASSERT_TRUE(cells.ok());
+  EXPECT_EQ(*cells, RasterizeRoute(kTop));
+  EXPECT_EQ(said.source, "search");
+  EXPECT_EQ(said.baseline_cost, 37);
+}
+
+TEST_F(VerifierNodeTest, WhatCostsNothingKnownIsNotANumber) {
+  HearMap();
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  EXPECT_TRUE(std::isnan(deployed_.back().deployed_cost));
+  EXPECT_TRUE(std::isnan(deployed_.back().baseline_cost));
+}
+
+TEST_F(VerifierNodeTest, ARequestWithoutAKnownActionIsNone) {
+  HearMap();
+  for (const int action : {-1, 0, 3, 127}) {
+    Hear(RequestOf(1, static_cast<std::int8_t>(action)));
+  }
+  EXPECT_TRUE(deployed_.empty());
+}
+
+TEST_F(VerifierNodeTest, CancelWithdrawsTheRoute) {
+  GetReady();
+  Hear(RequestOf(1, plan_request_t::ACTION_CANCEL));
+  EXPECT_EQ(deployed_.back().cause, deployed_t::CAUSE_CANCELLED);
+}
+
+TEST_F(VerifierNodeTest, APlannerThatWasReplacedIsIgnored) {
+  GetReady();
+  baseline_t other = BaselineOf(1, kCorners);
+  other.session = 501;
+  Hear(other);
+  EXPECT_EQ(bus::WaypointsOf(deployed_.back()), kCorners);
+  const std::size_t said = deployed_.size();
+  Hear(BaselineOf(1, kTop));
+  EXPECT_EQ(deployed_.size(), said);
+  EXPECT_EQ(Counter("from_replaced_planner"), 1);
+}
+
+TEST_F(VerifierNodeTest, AnOldBaselineOfTheSamePlannerIsIgnored) {
+  HearMap();
+  const baseline_t old = BaselineOf(1, kTop);
+  Hear(BaselineOf(1, kStraight));
+  Hear(old);
+  EXPECT_EQ(bus::WaypointsOf(deployed_.back()), kStraight);
+}
+
+TEST_F(VerifierNodeTest, OnlyStatusOkHasARoute) {
+  HearMap();
+  for (const int status :
+       {int{baseline_t::STATUS_NONE}, int{baseline_t::STATUS_NO_ROUTE},
+        int{baseline_t::STATUS_TOO_LONG}, -1, 127}) {
+    baseline_t baseline = BaselineOf(1, kStraight);
+    baseline.status = static_cast<std::int8_t>(status);
+    Hear(baseline);
+    EXPECT_EQ(deployed_.back().mode, deployed_t::MODE_NONE) << status;
+  }
+  baseline_t cancelled = BaselineOf(1, kStraight);
+  cancelled.status = baseline_t::STATUS_CANCELLED;
+  Hear(cancelled);
+  EXPECT_EQ(deployed_.back().cause, deployed_t::CAUSE_CANCELLED);
+}
+
+TEST_F(VerifierNodeTest, AnyByteMayBeTheKindOfAdvice) {
+  GetReady();
+  for (int kind = -128; kind <= 127; ++kind) {
+    advice_t advice = AdviceOf({});
+    advice.kind = static_cast<std::int8_t>(kind);
+    const Code code = CodeFor(advice);
+    switch (kind) {
+      case advice_t::KIND_RETAIN:
+        EXPECT_EQ(code, Code::kRetained);
+        break;
+      case advice_t::KIND_PROPOSE:
+        EXPECT_EQ(code, Code::kTooFewWaypoints);
+        break;
+      case advice_t::KIND_MALFORMED:
+        EXPECT_EQ(code, Code::kParseError);
+        break;
+      case advice_t::KIND_FAILED:
+        EXPECT_EQ(code, Code::kNotChecked) << "no verdict";
+        break;
+      default:
+        EXPECT_EQ(code, Code::kMalformedMessage) << kind;
+    }
+  }
+}
+
+TEST_F(VerifierNodeTest, AnchorAndPoseAreTheMessages) {
+  GetReady();
+  pose_t pose{};
+  pose.pose_x = 1;
+  pose.pose_y = 1;
+  pose.deployed_session = kSession;
+  pose.deployed_route_seq = deployed_.back().route_seq;
+  Hear(pose);
+  EXPECT_EQ(CodeFor(AdviceOf(kTop)), Code::kLate);
+  advice_t ahead = AdviceOf({{1, 1}, {2, 0}, {4, 0}, {5, 1}});
+  ahead.anchor_session = kSession;
+  ahead.anchor_route_seq = deployed_.back().route_seq;
+  ahead.anchor_index = 1;
+  ahead.anchor_x = 1;
+  ahead.anchor_y = 1;
+  EXPECT_EQ(CodeFor(ahead), Code::kAccepted);
+  EXPECT_EQ(verdicts_[0].anchor_index, 1);
+  EXPECT_EQ(verdicts_[0].anchor_x, 1);
+  EXPECT_EQ(verdicts_[0].cost_to_beat, 28);
+}
+
+// What the gate says repeats the names of others. If they had no bound, advice
+// that is accepted could keep DEPLOYED from ever fitting a message again.
+TEST_F(VerifierNodeTest, NoNameKeepsTheGateFromSpeaking) {
+  GetReady();
+  advice_t advice = AdviceOf(kTop);
+  advice.advisor.assign(59'800, 'x');
+  Advise(advice);
+  EXPECT_EQ(Counter("malformed_advice"), 1);
+  EXPECT_EQ(Counter("accepted"), 0);
+  const std::size_t said = deployed_.size();
+  now_ += milliseconds(200);
+  node_.Advance(now_);
+  EXPECT_EQ(deployed_.size(), said + 1);
+  advice.advisor.resize(bus::kMaxNameBytes);
+  EXPECT_EQ(CodeFor(advice), Code::kAccepted);
+  EXPECT_EQ(deployed_.back().source.size(), bus::kMaxNameBytes);
+}
+
+TEST_F(VerifierNodeTest, MalformedAdviceIsCountedAndHidesNoTroubleWithTheMap) {
+  const std::vector<std::uint8_t> garbage(40, 7);
+  node_.OnAdviceBytes(garbage, now_);
+  EXPECT_EQ(Counter("malformed_advice"), 1);
+  EXPECT_NE(node_.last_error().find("advice"), std::string::npos);
+  terra_msg::map_header_t header = bus::MakeMapHeader(Field());
+  header.session = 4;
+  header.seq = 1;
+  header.width = -1;
+  Hear(header);
+  node_.OnAdviceBytes(garbage, now_);
+  EXPECT_EQ(node_.last_error().find("advice"), std::string::npos);
+  EXPECT_FALSE(node_.last_error().empty());
+}
+
+TEST_F(VerifierNodeTest, TakesAdviceOffTheDeployedBusOnlyWhenTold) {
+  GetReady();
+  Hear(AdviceOf(kTop));
+  EXPECT_TRUE(verdicts_.empty());
+  node_.ListenToAdvice();
+  Hear(AdviceOf(kTop));
+  ASSERT_EQ(verdicts_.size(), 1u);
+  EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_ACCEPTED);
+}
+
+TEST_F(VerifierNodeTest, StateSaysWhatIsInForce) {
+  EXPECT_EQ(node_.state(), "waiting for map");
+  HearMap();
+  EXPECT_EQ(node_.state(), "ready, nothing deployed");
+  Hear(BaselineOf(1, {{0, 1}, {9, 9}, {5, 1}}));
+  EXPECT_EQ(node_.state(), "on hold: no valid route");
+  Hear(BaselineOf(1, kStraight));
+  EXPECT_EQ(node_.state(), "ready, baseline deployed");
+  Advise(AdviceOf(kTop));
+  EXPECT_EQ(node_.state(), "ready, candidate deployed");
+}
+
+}  // namespace
+}  // namespace terra::verifier

@@ -78,9 +78,10 @@ std::vector<std::string> LoggedMaps::Faults() const {
       continue;
     }
     const std::size_t cells = outline->grid.rect(name.first).cells();
+    const std::int64_t digest = name.second;
     const bool all_good = std::ranges::all_of(frames, [&](const Frame& frame) {
       const auto ids = bus::UnpackTile(frame, cells);
-      return ids && TileDigest(*ids) == name.second;
+      return ids && TileDigest(*ids) == digest;
     });
     if (!all_good) faults.push_back(tile + " is not what it says");
   }

@@ -60,6 +60,15 @@ class StateEvents {
       }
       events.emplace_back(MapEvent{map, map_id});
     }
+    // Those of before under a request of before: under the present one, one
+    // that cannot be read would be in force.
+    const std::int64_t before = deployed_.request_id == 1 ? 2 : 1;
+    events.emplace_back(RequestEvent{before, false, {}, {}});
+    for (const std::int64_t digest : replaced_.baselines) {
+      if (digest == deployed_.baseline_digest) continue;
+      events.emplace_back(BaselineOf(map_id, digest, {}));
+      std::get<BaselineEvent>(events.back()).request_id = before;
+    }
     for (const std::int64_t id : replaced_.requests) {
       events.emplace_back(RequestEvent{id, false, {}, {}});
     }
@@ -67,11 +76,6 @@ class StateEvents {
                                      false,
                                      {deployed_.start_x, deployed_.start_y},
                                      {deployed_.goal_x, deployed_.goal_y}});
-    for (const std::int64_t digest : replaced_.baselines) {
-      if (digest != deployed_.baseline_digest) {
-        events.emplace_back(BaselineOf(map_id, digest, {}));
-      }
-    }
     return events;
   }
 

@@ -168,6 +168,29 @@ Messages WithChangedVerdict(Messages messages, Change change) {
   return messages;
 }
 
+// What is missing before a new request does not make a mismatch of it, though
+// somebody said nonsense about its baseline later.
+TEST(Audit, AfterAMissingInputANewRequestIsTheStateToGoOnFrom) {
+  constexpr std::int8_t kNoKind = 99;
+  RecordedRun run;
+  run.Ask(21);
+  run.Advise(run.Baseline().value(), {RecordedRun::kStart, RecordedRun::kGoal});
+  const std::int64_t lost = Said<advice_t>(run.messages()).back().attempt;
+  run.Ask(22);
+  run.Advise(run.Baseline().value(), {RecordedRun::kStart, RecordedRun::kGoal},
+             kNoKind);
+  Messages messages = run.messages();
+  ASSERT_EQ(Said<verdict_t>(messages).back().code,
+            verdict_t::CODE_MALFORMED_MESSAGE);
+  std::erase_if(messages, [lost](const bus::RawMessage& message) {
+    return message.channel == bus::Channel::kAdvice &&
+           bus::Decode<advice_t>(message.bytes).value().attempt == lost;
+  });
+  const Audit audit = AuditOf(messages);
+  ASSERT_EQ(audit.num_findings, 1) << Text(audit);
+  EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
+}
+
 TEST(Audit, AForgedVerdictIsAMismatch) {
   const Audit audit =
       AuditOf(WithChangedVerdict(EventfulRun(), [](verdict_t& verdict) {

@@ -4,7 +4,7 @@ import json
 import statistics
 import subprocess
 
-WARM_UP = 0.25  # of a life is not compared
+WARM_UP = 0.25  # this share of a life is not compared
 SHORTEST_LIFE_S = 40.0
 RSS_GROWTH = 1.10
 RSS_SLACK_KB = 2_048

@@ -183,6 +183,8 @@ struct Decided {
   std::map<Judged, verdict_t> verdicts;
   Route last_route;
   std::int64_t last_decision = 0;
+  // An advice stands before its baseline in the log.
+  bool overtaken = false;
 };
 using DecidedByRequest = std::map<std::int64_t, Decided>;
 
@@ -214,6 +216,12 @@ DecidedByRequest DecidedIn(const logger::LogContents& log) {
           logged.message);
     }
   }
+  for (const auto& [name, variants] : log.advice) {
+    const auto* baseline = log.FindBaseline(name.baseline_digest, 0);
+    if (baseline != nullptr && variants.front().index < baseline->index) {
+      decided[name.request_id].overtaken = true;
+    }
+  }
   return decided;
 }
 
@@ -226,8 +234,11 @@ DecidedByRequest DecidedBy(BusPeer& bus) {
   return decided;
 }
 
-// Two advisors within 50 ms may be heard the other way round.
+// Two advisors within 50 ms may be heard the other way round. Advice that the
+// recorder heard before its baseline is judged in a replay only when it is
+// repeated, a second later: after any other's.
 bool MayHaveSwapped(const verdict_t& verdict, const Decided& request) {
+  if (request.overtaken) return true;
   return std::ranges::any_of(request.verdicts, [&](const auto& other) {
     return other.second.advisor != verdict.advisor &&
            std::abs(other.second.utime - verdict.utime) <= 50'000;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "verifier/gate_codec.h"
@@ -28,18 +27,19 @@ BaselineEvent AnswerOf(std::int64_t planner, std::int64_t request_id) {
   return answer;  // For map 0, so that nothing else comes of it.
 }
 
-// The first route that a gate is known to have deployed for a request.
-std::int64_t FirstRouteOf(
-    std::int64_t request_id,
+// The last route before a decision that is known to be another request's.
+std::int64_t LastRouteOfOthers(
+    std::int64_t request_id, std::int64_t decision,
     const std::map<std::int64_t, Logged<LogContents::Decided>>& decisions) {
-  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last = 0;
   for (const auto& [number, logged] : decisions) {
+    if (number >= decision) break;
     const auto* deployed = std::get_if<deployed_t>(&logged.message);
-    if (deployed != nullptr && deployed->request_id == request_id) {
-      first = std::min(first, deployed->route_seq);
+    if (deployed != nullptr && deployed->request_id != request_id) {
+      last = std::max(last, deployed->route_seq);
     }
   }
-  return first;
+  return last;
 }
 
 }  // namespace
@@ -340,8 +340,9 @@ DecisionCauses::Step DecisionCauses::PosesUntil(bool passed,
     return std::nullopt;
   };
   if (found == contents_.poses.end()) return missing();
-  const std::int64_t first_route = FirstRouteOf(
-      gate_->deployed().request_id, contents_.decisions.at(session_));
+  const std::int64_t others =
+      LastRouteOfOthers(gate_->deployed().request_id, decision_,
+                        contents_.decisions.at(session_));
   DrivenRoute driven = gate_->driven();
   GateEvents heard;
   for (std::size_t i = gate_->poses_heard();
@@ -352,9 +353,9 @@ DecisionCauses::Step DecisionCauses::PosesUntil(bool passed,
     verifier::PoseEvent event = verifier::ToEvent(found->second[i].message);
     event.route_seq = Difference(event.route_seq, route_seq_offset_);
     // From before the state that the audit began with: the robot's place may
-    // have come from a route before, if that was for the same request.
+    // have come from a route before, but not from another request's.
     if (found->second[i].index < began_at_ &&
-        found->second[i].message.deployed_route_seq >= first_route) {
+        found->second[i].message.deployed_route_seq > others) {
       event.route_seq = gate_->deployed().route_seq;
     }
     if (event.route_seq == gate_->deployed().route_seq) {

@@ -168,6 +168,16 @@ Messages WithChangedVerdict(Messages messages, Change change) {
   return messages;
 }
 
+// Loses an advice of a request, so that the audit goes on from the next one's
+// DEPLOYED.
+Messages WithoutAttempt(Messages messages, std::int64_t attempt) {
+  std::erase_if(messages, [attempt](const bus::RawMessage& message) {
+    return message.channel == bus::Channel::kAdvice &&
+           bus::Decode<advice_t>(message.bytes).value().attempt == attempt;
+  });
+  return messages;
+}
+
 // What is missing before a new request does not make a mismatch of it, though
 // somebody said nonsense about its baseline later.
 TEST(Audit, AfterAMissingInputANewRequestIsTheStateToGoOnFrom) {
@@ -179,14 +189,32 @@ TEST(Audit, AfterAMissingInputANewRequestIsTheStateToGoOnFrom) {
   run.Ask(22);
   run.Advise(run.Baseline().value(), {RecordedRun::kStart, RecordedRun::kGoal},
              kNoKind);
-  Messages messages = run.messages();
-  ASSERT_EQ(Said<verdict_t>(messages).back().code,
+  ASSERT_EQ(Said<verdict_t>(run.messages()).back().code,
             verdict_t::CODE_MALFORMED_MESSAGE);
-  std::erase_if(messages, [lost](const bus::RawMessage& message) {
-    return message.channel == bus::Channel::kAdvice &&
-           bus::Decode<advice_t>(message.bytes).value().attempt == lost;
-  });
-  const Audit audit = AuditOf(messages);
+  const Audit audit = AuditOf(WithoutAttempt(run.messages(), lost));
+  ASSERT_EQ(audit.num_findings, 1) << Text(audit);
+  EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
+}
+
+TEST(Audit, AfterAMissingInputPosesOfTheRequestBeforeShowNothing) {
+  const Route over = {
+      RecordedRun::kStart, {69, 29}, {90, 29}, RecordedRun::kGoal};
+  RecordedRun run;
+  run.Ask(21);
+  run.Advise(run.Baseline().value(), over);
+  run.DriveTo(run.Deployed().value(), 120);
+  run.Advise(run.Baseline().value(), {RecordedRun::kStart, RecordedRun::kGoal});
+  const std::int64_t lost = Said<advice_t>(run.messages()).back().attempt;
+  run.Ask(22);
+  run.Advise(run.Baseline().value(), over);
+  const deployed_t driven = run.Deployed().value();
+  ASSERT_EQ(driven.mode, deployed_t::MODE_CANDIDATE);
+  run.DriveTo(driven, 30);
+  run.AdviseFrom(driven, 10);
+  ASSERT_EQ(Said<verdict_t>(run.messages()).back().code, verdict_t::CODE_LATE);
+  run.AdviseFrom(driven, 90);
+  ASSERT_NE(Said<verdict_t>(run.messages()).back().code, verdict_t::CODE_LATE);
+  const Audit audit = AuditOf(WithoutAttempt(run.messages(), lost));
   ASSERT_EQ(audit.num_findings, 1) << Text(audit);
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
 }

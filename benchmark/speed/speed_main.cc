@@ -29,9 +29,9 @@ struct Amount {
 // Within five minutes. The sides at which figures are to be reached over many
 // maps have them; at 4000 the graph libraries take seconds for each query.
 constexpr Amount kFull[] = {{500, 50, 8, kRounds},
-                            {1000, 8, 2, kRounds},
+                            {1000, 6, 2, kRounds},
                             {2000, 3, 1, 3},
-                            {4000, 1, 1, 3}};
+                            {4000, 1, 1, 2}};
 constexpr Amount kQuick[] = {{500, 3, 2, kRounds}, {1000, 1, 1, kRounds}};
 
 void RunCase(Subset subset, int index, const Amount& amount,

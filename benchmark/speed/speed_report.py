@@ -1,15 +1,17 @@
 """Makes tables and a plot of what terra-speed and its peers measured.
 
-usage: speed_report.py FOLDER
+usage: speed_report.py FOLDER [DOCS]
 
 Reads FOLDER/samples/*.csv and FOLDER/machine.txt, prints the tables and writes
-them to FOLDER/speed.md, the plot to FOLDER/speed.svg.
+them to FOLDER/speed.md, the plot to FOLDER/speed.svg. With DOCS also to
+DOCS/performance.md, between its markers, and DOCS/images/speed.svg.
 """
 
 import collections
 import csv
 import math
 import pathlib
+import shutil
 import statistics
 import sys
 
@@ -18,6 +20,8 @@ import matplotlib
 matplotlib.use("svg")
 matplotlib.rcParams["svg.hashsalt"] = "terra"  # The same bytes every time.
 import matplotlib.pyplot as plt  # noqa: E402
+
+from docs_section import write_between_markers  # noqa: E402
 
 FAMILIES = ["easy", "hard"]
 GRAPH_PEERS = ["Boost.Graph A*", "LEMON A*"]
@@ -211,20 +215,20 @@ def markdown(s, machine):
     return "\n".join([
         machine,
         f"Maps of each subset: {number_of_maps(s)}.\n",
-        "Figures to reach (500 x 500; Easy, Hard)\n",
+        "### Figures to reach (500 x 500; Easy, Hard)\n",
         table(["Figure", "Wanted", "Easy", "Hard"], figures(s)),
-        "Searches, 500 x 500: milliseconds, and times the bounded search\n",
+        "### Searches, 500 x 500: milliseconds, and times the bounded search\n",
         table(["Work", "Easy median", "p95", "times", "Hard median", "p95",
                "times"], search_rows(s)),
-        "Searches by side: median, milliseconds\n",
+        "### Searches by side: median, milliseconds\n",
         table(["Work", "Maps", *sides], growth_rows(s, search_works(s), time)),
-        "Searches by side: median, nanoseconds per cell of the map\n",
+        "### Searches by side: median, nanoseconds per cell of the map\n",
         table(["Work", "Maps", *sides], growth_rows(s, search_works(s), rate)),
-        "The rest by side: median, milliseconds\n",
+        "### The rest by side: median, milliseconds\n",
         table(["Work", "Maps", *sides], growth_rows(s, chain, time)),
-        "The rest by side: median, nanoseconds per cell (of the route) or byte\n",
+        "### The rest by side: median, nanoseconds per cell (of the route) or byte\n",
         table(["Work", "Maps", *sides], growth_rows(s, rates, rate)),
-        "Worst cases, 500 x 500: milliseconds, and parts of a textbook A*\n",
+        "### Worst cases, 500 x 500: milliseconds, and parts of a textbook A*\n",
         table(["Map", "search", "portable", "textbook A*", "search / textbook",
                "portable / textbook"], worst_rows(s)),
     ])
@@ -251,13 +255,20 @@ def plot(s, path):
     figure.savefig(path, metadata={"Date": None})
 
 
-def main(folder):
+def write_docs(folder, docs, text):
+    shutil.copyfile(folder / "speed.svg", docs / "images" / "speed.svg")
+    write_between_markers(docs / "performance.md", "speed", text)
+
+
+def main(folder, docs=None):
     samples = Samples(folder)
     text = markdown(samples, (folder / "machine.txt").read_text())
     (folder / "speed.md").write_text(text)
     plot(samples, folder / "speed.svg")
+    if docs:
+        write_docs(folder, docs, text)
     print(text)
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]))
+    main(*map(pathlib.Path, sys.argv[1:]))

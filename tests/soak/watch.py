@@ -38,7 +38,7 @@ class Watch:
         self._ask_at = self._pose_at = 0.0
         self._request = None
         self._next_request_at = 0.0
-        self._baselines = {}  # digest: (cost, cells) by the watch's own sums
+        self._baselines = {}  # digest: cells
         self._in_force = {}  # gate session: the DEPLOYED last judged
         self._driven = (None, [], 0)  # route, its cells, where the robot is
         self.states = {}  # process: state last heard
@@ -120,10 +120,8 @@ class Watch:
             if message.status == message.STATUS_OK:
                 request.planned_us = request.planned_us or message.utime
         if message.status == message.STATUS_OK and message.baseline_digest not in self._baselines:
-            cells = field.raster(list(zip(message.waypoint_x, message.waypoint_y)))
-            known = self._fields.get(message.map_id)
-            if known:
-                self._baselines[message.baseline_digest] = (known.route_cost(cells), cells)
+            self._baselines[message.baseline_digest] = field.raster(
+                list(zip(message.waypoint_x, message.waypoint_y)))
 
     def _hear_deployed(self, message, now):
         request = self._request
@@ -177,8 +175,9 @@ class Watch:
         baseline = self._baselines.get(message.baseline_digest)
         if baseline is None:
             self.unknown_baselines += 1  # its message was lost, or is not here yet
-        elif not abs(baseline[0] - message.baseline_cost) <= EPSILON:
-            return f"the baseline costs {baseline[0]}, says {message.baseline_cost}"
+        elif not abs(known.route_cost(baseline) - message.baseline_cost) <= EPSILON:
+            # On the map in force, which may not be the one it was planned on.
+            return f"the baseline costs {known.route_cost(baseline)}, says {message.baseline_cost}"
         if cost > message.baseline_cost + EPSILON:
             return f"costs {cost}, the baseline {message.baseline_cost}"
         same = before and (before.request_id, before.map_id) == (message.request_id, message.map_id)

@@ -1,5 +1,9 @@
 #include "bus/wire.h"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -117,6 +121,43 @@ TYPED_TEST(EveryMessageTypeTest, SurvivesRandomDamage) {
   }
 }
 
+// Bytes with nothing behind them: whoever reads on is ended by the system.
+class BytesAtTheEnd {
+ public:
+  explicit BytesAtTheEnd(std::span<const std::uint8_t> bytes)
+      : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))) {
+    TERRA_REQUIRE(bytes.size() <= page_);
+    void* pages = mmap(nullptr, 2 * page_, PROT_READ | PROT_WRITE,
+                       MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    TERRA_REQUIRE(pages != MAP_FAILED);
+    begin_ = static_cast<std::uint8_t*>(pages);
+    TERRA_REQUIRE(mprotect(begin_ + page_, page_, PROT_NONE) == 0);
+    bytes_ = {begin_ + page_ - bytes.size(), bytes.size()};
+    std::ranges::copy(bytes, bytes_.begin());
+  }
+  BytesAtTheEnd(const BytesAtTheEnd&) = delete;
+  BytesAtTheEnd& operator=(const BytesAtTheEnd&) = delete;
+  ~BytesAtTheEnd() { munmap(begin_, 2 * page_); }
+
+  std::span<const std::uint8_t> bytes() const { return bytes_; }
+
+ private:
+  std::size_t page_;
+  std::uint8_t* begin_ = nullptr;
+  std::span<std::uint8_t> bytes_;
+};
+
+TYPED_TEST(EveryMessageTypeTest, NothingIsReadBeyondACut) {
+  const Bytes whole = Encode(StampedSample<TypeParam>());
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const BytesAtTheEnd cut(std::span<const std::uint8_t>(whole).first(size));
+    EXPECT_FALSE(CheckLayout(MessageTraits<TypeParam>::kLayout,
+                             TypeParam::getHash(), cut.bytes())
+                     .ok())
+        << size;
+  }
+}
+
 // Layouts of this test's own, with any fingerprint.
 constexpr std::int64_t kFingerprint = 5;
 Bytes WithFingerprint(const Bytes& rest) {
@@ -126,6 +167,27 @@ Bytes WithFingerprint(const Bytes& rest) {
 }
 bool Fits(std::string_view layout, const Bytes& rest) {
   return CheckLayout(layout, kFingerprint, WithFingerprint(rest)).ok();
+}
+
+TEST(CheckLayoutTest, TheFingerprintIsTheTypes) {
+  EXPECT_TRUE(CheckLayout("b", kFingerprint, WithFingerprint({1})).ok());
+  EXPECT_FALSE(CheckLayout("b", kFingerprint + 1, WithFingerprint({1})).ok());
+}
+
+TEST(CheckLayoutTest, NoByteIsLeftOver) {
+  EXPECT_TRUE(Fits("b", {1}));
+  EXPECT_FALSE(Fits("b", {1, 1}));
+}
+
+TEST(CheckLayoutTest, ACountBelowZeroIsRefusedEvenWithNothingToCount) {
+  EXPECT_TRUE(Fits("N9", {0, 0, 0, 9}));
+  EXPECT_FALSE(Fits("N9", {255, 255, 255, 255}));
+  EXPECT_FALSE(Fits("N", {255, 255, 255, 255}));
+}
+
+TEST(CheckLayoutTest, AnArrayBeyondTheEndIsRefusedBeforeWhatFollowsIsRead) {
+  const BytesAtTheEnd bytes(WithFingerprint({127, 255, 255, 255}));
+  EXPECT_FALSE(CheckLayout("N l* s", kFingerprint, bytes.bytes()).ok());
 }
 
 TEST(CheckLayoutTest, ACountMayReachItsLimitAndNoMore) {

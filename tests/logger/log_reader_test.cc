@@ -1,7 +1,6 @@
 #include "logger/log_reader.h"
 
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/random_map.h"
+#include "tests/support/temp_folder.h"
 
 namespace terra::logger {
 namespace {
@@ -42,12 +42,11 @@ std::string ChannelsIn(LogReader& reader) {
   return channels;
 }
 
-std::string WriteFile(const std::string& name, const Bytes& bytes) {
-  const std::string path = ::testing::TempDir() + name;
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  return path;
+// Writes the bytes into a file of that folder and opens it.
+Result<LogReader> OpenFile(const testing::TempFolder& folder,
+                           const Bytes& bytes) {
+  return LogReader::Open(folder.Write(
+      "some.lcmlog", std::string(bytes.begin(), bytes.end())));
 }
 
 TEST(LogReader, GivesBackWhatWasAppended) {
@@ -159,7 +158,8 @@ TEST(LogReader, AFileReadsAsItsBytesDo) {
     bytes[at] ^= 0x01;
   }
   LogReader memory(bytes);
-  auto file = LogReader::Open(WriteFile("reads_as_bytes.lcmlog", bytes));
+  const testing::TempFolder folder;
+  auto file = OpenFile(folder, bytes);
   ASSERT_TRUE(file) << file.error().message;
   while (true) {
     const auto a = memory.Next();
@@ -185,7 +185,8 @@ TEST(LogReader, AFileOfLargeClaimsTakesLinearTime) {
     bytes[begin + 25] = 0x40;
     bytes.push_back(0);
   }
-  auto file = LogReader::Open(WriteFile("claims.lcmlog", bytes));
+  const testing::TempFolder folder;
+  auto file = OpenFile(folder, bytes);
   ASSERT_TRUE(file);
   std::int64_t in_events = 0;
   while (const auto item = file->Next()) in_events += std::ssize(item->raw);
@@ -196,7 +197,8 @@ TEST(LogReader, SaysWhyAFileCannotBeRead) {
   const auto missing = LogReader::Open("/nonexistent/x.lcmlog");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::kNotFound);
-  const auto folder = LogReader::Open(::testing::TempDir());
+  const testing::TempFolder made;
+  const auto folder = LogReader::Open(made.Path(""));
   ASSERT_FALSE(folder);
   EXPECT_EQ(folder.error().code, ErrorCode::kUnavailable);
   EXPECT_THAT(folder.error().message, ::testing::HasSubstr("not a file"));

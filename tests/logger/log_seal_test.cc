@@ -1,8 +1,6 @@
 #include "logger/log_seal.h"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +9,7 @@
 
 #include "logger/log_channels.h"
 #include "logger/log_writer.h"
+#include "tests/support/temp_folder.h"
 
 namespace terra::logger {
 namespace {
@@ -21,15 +20,10 @@ using ::testing::IsEmpty;
 
 using Bytes = std::vector<std::uint8_t>;
 
-Bytes ReadFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return Bytes(std::istreambuf_iterator<char>(file), {});
-}
-
 // A closed log with four messages in two sealed stretches.
 Bytes WriteSmallLog() {
-  const std::string path = ::testing::TempDir() + "small.lcmlog";
-  std::filesystem::remove(path);
+  const testing::TempFolder folder;
+  const std::string path = folder.Path("small.lcmlog");
   auto writer = LogWriter::Create({path, "R1_TERRA_LOG", 42, 0});
   EXPECT_TRUE(writer);
   writer->Seal(1'000, log_mark_t::KIND_HEADER, "header");
@@ -42,7 +36,8 @@ Bytes WriteSmallLog() {
   }
   writer->Seal(3'000, log_mark_t::KIND_END);
   EXPECT_TRUE(writer->Sync());
-  return ReadFile(path);
+  const std::string bytes = testing::ReadBytes(path);
+  return Bytes(bytes.begin(), bytes.end());
 }
 
 struct Checked {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -19,7 +18,7 @@ std::string ResultsPath(const std::string& folder) {
   return (fs::path(folder) / "results.csv").string();
 }
 
-// A shard on disk: its rows lie `count` places apart in the whole run.
+// A shard on disk.
 struct ShardRows {
   std::string folder;
   RunDescription description;
@@ -43,66 +42,98 @@ Result<std::vector<ShardRows>> LoadShards(
   return shards;
 }
 
-// A row's place in the whole run, and where it stands now.
-struct Row {
-  std::int64_t order = 0;
-  std::size_t shard = 0;
-  std::int64_t offset = 0;
-  std::int64_t length = 0;
-};
+std::string ShardName(const Shard& shard) {
+  return "shard " + std::to_string(shard.index) + " of " +
+         std::to_string(shard.count);
+}
 
-// Finds the rows of a shard. A finished shard has its rows in order of cases;
-// the k-th case of shard i of n is case k n + i - 1 of the list.
-Status FindRows(const ShardRows& shard, std::size_t number,
-                std::set<std::string>& seen, std::vector<Row>& rows) {
-  std::optional<Error> failure;
-  std::int64_t k = -1;
-  std::string last_id;
-  const auto begin = rows.size();
+// Rows that a shard has when it is finished.
+std::int64_t NumRowsDue(const RunDescription& d) {
+  const std::int64_t cases =
+      (d.num_cases + d.shard.count - d.shard.index) / d.shard.count;
+  return cases * d.repeats;
+}
+
+// What a shard lacks, as text; empty when it is finished.
+Result<std::string> WhatIsLeft(const ShardRows& shard) {
+  const std::int64_t due = NumRowsDue(shard.description);
+  if (shard.description.finished.empty()) {
+    return ShardName(shard.description.shard) + " in " + shard.folder +
+           " is not finished: start it again";
+  }
+  std::int64_t rows = 0;
   const Status read =
-      ReadResults(ResultsPath(shard.folder), [&](const CaseResult& r) {
-        if (r.case_id != last_id) ++k;
-        last_id = r.case_id;
-        const std::string key = r.case_id + "#" + std::to_string(r.repeat);
-        if (!seen.insert(key).second) {
-          failure =
-              Error{ErrorCode::kInvalid, shard.folder + ": case " + r.case_id +
-                                             " is in two of the parts"};
-        }
-        const RunDescription& d = shard.description;
-        const std::int64_t index = k * d.shard.count + d.shard.index - 1;
-        rows.push_back({index * d.repeats + r.repeat, number, 0, 0});
+      ReadResults(ResultsPath(shard.folder), [&](const CaseResult&) {
+        ++rows;
       });
   if (!read.ok()) return read.error();
-  if (failure) return *failure;
-  std::ifstream file(ResultsPath(shard.folder), std::ios::binary);
-  std::string line;
-  std::getline(file, line);
-  auto offset = static_cast<std::int64_t>(line.size()) + 1;
-  for (std::size_t i = begin; std::getline(file, line); ++i) {
-    rows.at(i).offset = offset;
-    rows.at(i).length = static_cast<std::int64_t>(line.size()) + 1;
-    offset += rows.at(i).length;
+  if (rows == due) return std::string();
+  return ShardName(shard.description.shard) + " in " + shard.folder + " has " +
+         std::to_string(rows) + " of " + std::to_string(due) + " rows";
+}
+
+// Puts the shards into order of their numbers. Every one of them must be there
+// once and finished; the error names all that are not.
+Status OrderShards(std::vector<ShardRows>& shards) {
+  const int count = shards.front().description.shard.count;
+  std::vector<ShardRows> ordered(static_cast<std::size_t>(count));
+  for (ShardRows& shard : shards) {
+    const Shard& part = shard.description.shard;
+    if (part.count != count) {
+      return Error{ErrorCode::kInvalid,
+                   shard.folder + " is " + ShardName(part) +
+                       ", others are parts of " + std::to_string(count)};
+    }
+    ShardRows& place = ordered[static_cast<std::size_t>(part.index - 1)];
+    if (!place.folder.empty()) {
+      return Error{ErrorCode::kInvalid, place.folder + " and " + shard.folder +
+                                            " are both " + ShardName(part)};
+    }
+    place = std::move(shard);
   }
+  std::string left;
+  for (int i = 0; i < count; ++i) {
+    const ShardRows& shard = ordered[static_cast<std::size_t>(i)];
+    Result<std::string> what = shard.folder.empty()
+                                   ? ShardName({i + 1, count}) + " is missing"
+                                   : WhatIsLeft(shard);
+    if (!what.ok()) return what.error();
+    if (!what->empty()) left += (left.empty() ? "" : "; ") + *what;
+  }
+  if (!left.empty()) return Error{ErrorCode::kUnavailable, left};
+  shards = std::move(ordered);
   return Done{};
 }
 
-Status CopyRows(const std::vector<ShardRows>& shards,
-                const std::vector<Row>& rows, const std::string& path) {
+// Deals the rows back as the cases were dealt: finished shards have theirs in
+// order of the cases, and case k of shard i of n is case k n + i - 1.
+Result<std::int64_t> CopyRows(const std::vector<ShardRows>& shards,
+                              const std::string& path) {
   std::vector<std::ifstream> files;
+  std::string line;
   for (const ShardRows& shard : shards) {
     files.emplace_back(ResultsPath(shard.folder), std::ios::binary);
+    std::getline(files.back(), line);  // The header.
   }
-  std::ofstream to(path, std::ios::binary | std::ios::trunc);
+  const std::string unfinished = path + ".part";
+  std::ofstream to(unfinished, std::ios::binary | std::ios::trunc);
   to << ResultsHeader();
-  std::string line;
-  for (const Row& row : rows) {
-    line.resize(static_cast<std::size_t>(row.length));
-    files[row.shard].seekg(row.offset);
-    files[row.shard].read(line.data(), row.length);
-    to << line;
+  const RunDescription& whole = shards.front().description;
+  std::int64_t rows = 0;
+  for (std::int64_t i = 0; i < whole.num_cases; ++i) {
+    std::ifstream& from = files[static_cast<std::size_t>(i) % files.size()];
+    for (int repeat = 0; repeat < whole.repeats; ++repeat, ++rows) {
+      std::getline(from, line);
+      to << line << "\n";
+    }
+    if (!from) break;
   }
-  if (to.flush()) return Done{};
+  to.close();
+  std::error_code failed;
+  if (to && rows == whole.num_cases * whole.repeats) {
+    fs::rename(unfinished, path, failed);
+    if (!failed) return rows;
+  }
   return Error{ErrorCode::kUnavailable, path + ": cannot be written"};
 }
 
@@ -127,33 +158,22 @@ RunDescription MergedDescription(const std::vector<ShardRows>& shards) {
 
 }  // namespace
 
-Result<MergeCounts> MergeRuns(const std::vector<std::string>& folders,
-                              const std::string& out) {
-  const auto shards = LoadShards(folders);
-  if (!shards.ok()) return shards.error();
+Result<std::int64_t> MergeRuns(const std::vector<std::string>& folders,
+                               const std::string& out) {
   if (fs::exists(ResultsPath(out))) {
     return Error{ErrorCode::kInvalid,
                  out + " holds results already; choose another folder"};
   }
-  std::vector<Row> rows;
-  std::set<std::string> seen;
-  for (std::size_t i = 0; i < shards->size(); ++i) {
-    const Status found = FindRows((*shards)[i], i, seen, rows);
-    if (!found.ok()) return found.error();
-  }
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-    return std::pair(a.order, a.shard) < std::pair(b.order, b.shard);
-  });
+  auto shards = LoadShards(folders);
+  if (!shards.ok()) return shards.error();
+  const Status ordered = OrderShards(*shards);
+  if (!ordered.ok()) return ordered.error();
   std::error_code failed;
   fs::create_directories(out, failed);
-  const Status copied = CopyRows(*shards, rows, ResultsPath(out));
-  if (!copied.ok()) return copied.error();
-  const RunDescription merged = MergedDescription(*shards);
-  const Status written =
-      WriteRunDescription(merged, (fs::path(out) / "run.json").string());
+  const Status written = WriteRunDescription(
+      MergedDescription(*shards), (fs::path(out) / "run.json").string());
   if (!written.ok()) return written.error();
-  const auto count = static_cast<std::int64_t>(rows.size());
-  return MergeCounts{count, merged.num_cases * merged.repeats - count};
+  return CopyRows(*shards, ResultsPath(out));
 }
 
 }  // namespace terra::benchmark

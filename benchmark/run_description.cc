@@ -82,19 +82,20 @@ void ReadConfiguration(const ordered_json& c, RunDescription& d) {
   c.at("dataset").at("version").get_to(d.dataset_version);
   c.at("dataset").at("digest").get_to(d.dataset_digest);
   c.at("case_list_digest").get_to(d.case_list_digest);
-  c.at("cases").get_to(d.num_cases);
-  c.at("stride").get_to(d.stride);
+  d.num_cases = advisor::IntegerAt<std::int64_t>(c, "cases");
+  d.stride = advisor::IntegerAt<int>(c, "stride");
   c.at("joints").get_to(d.joints);
   c.at("cost_model").at("corner_cutting").get_to(d.corner_cutting);
-  c.at("cost_model").at("clearance_cells").get_to(d.clearance_cells);
-  c.at("repeats").get_to(d.repeats);
+  d.clearance_cells =
+      advisor::IntegerAt<int>(c.at("cost_model"), "clearance_cells");
+  d.repeats = advisor::IntegerAt<int>(c, "repeats");
   d.settings_json = c.at("settings").dump();
 }
 
 void ReadOrigin(const ordered_json& j, RunDescription& d) {
-  j.at("shard").at("index").get_to(d.shard.index);
-  j.at("shard").at("count").get_to(d.shard.count);
-  j.at("jobs").get_to(d.jobs);
+  d.shard.index = advisor::IntegerAt<int>(j.at("shard"), "index");
+  d.shard.count = advisor::IntegerAt<int>(j.at("shard"), "count");
+  d.jobs = advisor::IntegerAt<int>(j, "jobs");
   j.at("build").at("id").get_to(d.build_id);
   j.at("command_line").get_to(d.command_line);
   j.at("machine").get_to(d.machine);
@@ -192,6 +193,11 @@ Result<RunDescription> ReadRunDescription(const std::string& path) {
     RunDescription d;
     ReadConfiguration(document.at("configuration"), d);
     ReadOrigin(document, d);
+    if (d.num_cases < 0 || d.repeats < 1 || d.shard.index < 1 ||
+        d.shard.index > d.shard.count) {
+      return Error{ErrorCode::kInvalid,
+                   path + ": no such number of cases, repeats or shards"};
+    }
     return d;
   } catch (const nlohmann::json::exception& error) {
     return Error{ErrorCode::kInvalid, path + ": " + error.what()};

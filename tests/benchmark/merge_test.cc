@@ -1,5 +1,7 @@
 #include "benchmark/merge.h"
 
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +9,8 @@
 #include "benchmark/generate_dataset.h"
 #include "benchmark/loaded_run.h"
 #include "benchmark/run.h"
+#include "benchmark/run_description.h"
+#include "terrain/files/whole_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
 
@@ -16,6 +20,7 @@ namespace {
 using terra::testing::ErrorMessage;
 using terra::testing::TempFolder;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class MergeTest : public ::testing::Test {
  protected:
@@ -64,8 +69,7 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   }
   const auto counts = MergeRuns(shards, folder_.Path("merged"));
   ASSERT_TRUE(counts.ok()) << ErrorMessage(counts);
-  EXPECT_EQ(counts->rows, 16);
-  EXPECT_EQ(counts->missing, 0);
+  EXPECT_EQ(*counts, 16);
   EXPECT_EQ(ResultsOf("merged"), ResultsOf("whole"));
   const auto runs = LoadRuns({folder_.Path("merged"), folder_.Path("whole")});
   ASSERT_TRUE(runs.ok()) << ErrorMessage(runs);
@@ -73,15 +77,61 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   EXPECT_EQ(WhyNotComparable(runs->at(0), runs->at(1)), "");
 }
 
-TEST_F(MergeTest, AMissingShardIsCounted) {
+TEST_F(MergeTest, ShardsThatAreMissingOrNotFinishedAreNamed) {
   RunOptions options;
-  options.shard = {2, 3};
-  Run("shard2", options);
-  const auto counts =
-      MergeRuns({folder_.Path("shard2")}, folder_.Path("merged"));
-  ASSERT_TRUE(counts.ok()) << ErrorMessage(counts);
-  EXPECT_EQ(counts->rows, 3);
-  EXPECT_EQ(counts->missing, 5);
+  for (const int i : {1, 3, 5}) {
+    options.shard = {i, 5};
+    Run("shard" + std::to_string(i), options);
+  }
+  // Shard 1 was killed, shard 3 lost a row, 2 and 4 are not there.
+  auto killed = ReadRunDescription(folder_.Path("shard1/run.json")).value();
+  killed.finished.clear();
+  ASSERT_TRUE(
+      WriteRunDescription(killed, folder_.Path("shard1/run.json")).ok());
+  const std::string results = folder_.Path("shard3/results.csv");
+  std::string text = ReadWholeFile(results, 1 << 20).value();
+  text.resize(text.rfind('\n', text.size() - 2) + 1);
+  folder_.Write("shard3/results.csv", text);
+  const std::string error = ErrorMessage(MergeRuns(
+      {folder_.Path("shard5"), folder_.Path("shard3"), folder_.Path("shard1")},
+      folder_.Path("merged")));
+  EXPECT_THAT(error, HasSubstr("shard 1 of 5 in " + folder_.Path("shard1") +
+                               " is not finished"));
+  EXPECT_THAT(error, HasSubstr("shard 2 of 5 is missing"));
+  EXPECT_THAT(error, HasSubstr("shard 3 of 5 in " + folder_.Path("shard3") +
+                               " has 1 of 2 rows"));
+  EXPECT_THAT(error, HasSubstr("shard 4 of 5 is missing"));
+  EXPECT_THAT(error, Not(HasSubstr("shard 5 of 5")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("merged")));
+}
+
+TEST_F(MergeTest, AShardThatCannotBeIsRefused) {
+  RunOptions options;
+  Run("a", options);
+  const std::string path = folder_.Path("a/run.json");
+  const RunDescription good = ReadRunDescription(path).value();
+  for (const Shard wrong : {Shard{0, 1}, Shard{2, 1}, Shard{1, 0}}) {
+    RunDescription bad = good;
+    bad.shard = wrong;
+    ASSERT_TRUE(WriteRunDescription(bad, path).ok());
+    EXPECT_THAT(ErrorMessage(MergeRuns({folder_.Path("a")}, folder_.Path("m"))),
+                HasSubstr("repeats or shards"));
+  }
+}
+
+TEST_F(MergeTest, MoreShardsThanCasesAreMergedAsWell) {
+  RunOptions options;
+  options.cases = {"easy_0001", "hard_0001"};
+  Run("whole", options);
+  std::vector<std::string> shards;
+  for (const int i : {3, 1, 2}) {
+    options.shard = {i, 3};
+    const std::string name = "shard" + std::to_string(i);
+    Run(name, options);
+    shards.push_back(folder_.Path(name));
+  }
+  ASSERT_TRUE(MergeRuns(shards, folder_.Path("merged")).ok());
+  EXPECT_EQ(ResultsOf("merged"), ResultsOf("whole"));
 }
 
 TEST_F(MergeTest, RefusesPartsOfDifferentRunsAndTheSamePartTwice) {
@@ -94,7 +144,7 @@ TEST_F(MergeTest, RefusesPartsOfDifferentRunsAndTheSamePartTwice) {
               HasSubstr("different runs"));
   EXPECT_THAT(ErrorMessage(MergeRuns({folder_.Path("a"), folder_.Path("a")},
                                      folder_.Path("merged"))),
-              HasSubstr("in two of the parts"));
+              HasSubstr("are both shard 1 of 1"));
 }
 
 TEST_F(MergeTest, RunsThatDifferCannotStandInOneTable) {

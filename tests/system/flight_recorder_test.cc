@@ -183,8 +183,8 @@ struct Decided {
   std::map<Judged, verdict_t> verdicts;
   Route last_route;
   std::int64_t last_decision = 0;
-  // An advice stands before its baseline in the log.
-  bool overtaken = false;
+  // Who gave advice, and when it was logged first, microseconds.
+  std::vector<std::pair<std::string, std::int64_t>> advised;
 };
 using DecidedByRequest = std::map<std::int64_t, Decided>;
 
@@ -217,10 +217,8 @@ DecidedByRequest DecidedIn(const logger::LogContents& log) {
     }
   }
   for (const auto& [name, variants] : log.advice) {
-    const auto* baseline = log.FindBaseline(name.baseline_digest, 0);
-    if (baseline != nullptr && variants.front().index < baseline->index) {
-      decided[name.request_id].overtaken = true;
-    }
+    decided[name.request_id].advised.emplace_back(
+        variants.front().message.advisor, variants.front().time_us);
   }
   return decided;
 }
@@ -234,19 +232,37 @@ DecidedByRequest DecidedBy(BusPeer& bus) {
   return decided;
 }
 
-// Two advisors within 50 ms may be heard the other way round. Advice that the
-// recorder heard before its baseline is judged in a replay only when it is
-// repeated, a second later: after any other's.
-bool MayHaveSwapped(const verdict_t& verdict, const Decided& request) {
-  if (request.overtaken) return true;
-  return std::ranges::any_of(request.verdicts, [&](const auto& other) {
-    return other.second.advisor != verdict.advisor &&
-           std::abs(other.second.utime - verdict.utime) <= 50'000;
-  });
-}
-
 bool IsCheaper(std::int16_t code) {
   return code == verdict_t::CODE_ACCEPTED || code == verdict_t::CODE_NOT_BEST;
+}
+
+// When a cheaper route of that advisor, or of all others, was logged first.
+std::vector<std::int64_t> TimesOfCheaperAdvice(const Decided& request,
+                                               const std::string& advisor,
+                                               bool of_others) {
+  std::vector<std::int64_t> times;
+  for (const auto& [name, time_us] : request.advised) {
+    if ((name != advisor) != of_others) continue;
+    const bool cheaper =
+        std::ranges::any_of(request.verdicts, [&name = name](const auto& one) {
+          return one.second.advisor == name && IsCheaper(one.second.code);
+        });
+    if (cheaper) times.push_back(time_us);
+  }
+  return times;
+}
+
+// What two advisors said within 50 ms may be judged the other way round: two
+// buses keep no order, and advice that the gate or the recorder heard before its
+// baseline counts when it is repeated.
+bool MayHaveSwapped(const std::string& advisor, const Decided& request) {
+  for (const std::int64_t own : TimesOfCheaperAdvice(request, advisor, false)) {
+    for (const std::int64_t other :
+         TimesOfCheaperAdvice(request, advisor, true)) {
+      if (std::abs(own - other) <= 50'000) return true;
+    }
+  }
+  return false;
 }
 
 bool SameCost(double a, double b) {
@@ -261,7 +277,7 @@ void ExpectSame(const Decided& recorded, const Decided& replayed) {
     ASSERT_NE(found, replayed.verdicts.end()) << verdict.advisor;
     const verdict_t& again = found->second;
     const bool swapped = IsCheaper(verdict.code) && IsCheaper(again.code) &&
-                         MayHaveSwapped(verdict, recorded);
+                         MayHaveSwapped(verdict.advisor, recorded);
     EXPECT_TRUE(verdict.code == again.code || swapped)
         << verdict.advisor << ": " << verdict.code << " and " << again.code;
     EXPECT_TRUE(SameCost(verdict.candidate_cost, again.candidate_cost));

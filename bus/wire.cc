@@ -31,16 +31,18 @@ class Walker {
     return value;
   }
 
-  bool SkipString(std::uint32_t limit) {
+  bool SkipString(std::int32_t limit) {
     if (left() < 4) return false;
-    // A length below 0 is a huge one here.
-    const std::uint64_t length = Unsigned(4);
-    if (length > left() || length > limit + std::uint64_t{1}) return false;
-    const auto text = bytes_.subspan(at_, length);
-    at_ += length;
+    const auto length =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(Unsigned(4)));
+    if (length < 1 || static_cast<std::size_t>(length) > left() ||
+        length - 1 > limit) {
+      return false;
+    }
+    const auto text = bytes_.subspan(at_, static_cast<std::size_t>(length));
+    at_ += text.size();
     // The length counts the zero at the end, which must be the only one.
-    const auto zero = std::find(text.begin(), text.end(), 0);
-    return zero != text.end() && zero + 1 == text.end();
+    return std::find(text.begin(), text.end(), 0) == text.end() - 1;
   }
 
  private:
@@ -51,7 +53,7 @@ class Walker {
 // One field of a layout.
 struct Field {
   char kind = ' ';
-  std::uint32_t limit = std::numeric_limits<std::int32_t>::max();
+  std::int32_t limit = std::numeric_limits<std::int32_t>::max();
   bool repeated = false;
 };
 
@@ -61,8 +63,7 @@ Field NextField(std::string_view layout, std::size_t& at) {
   field.kind = layout[at++];
   if (at < layout.size() && std::isdigit(layout[at]) != 0) field.limit = 0;
   while (at < layout.size() && std::isdigit(layout[at]) != 0) {
-    field.limit =
-        field.limit * 10 + static_cast<std::uint32_t>(layout[at++] - '0');
+    field.limit = field.limit * 10 + (layout[at++] - '0');
   }
   field.repeated = at < layout.size() && layout[at] == '*';
   if (field.repeated) ++at;
@@ -108,12 +109,13 @@ Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
     if (field.kind == ' ') continue;
     if (field.kind == 'N') {
       if (walker.left() < 4) return Malformed("truncated");
-      // A count below 0 is a huge one here.
-      count = walker.Unsigned(4);
-      if (count > field.limit) {
-        return Malformed("count " + std::to_string(count) + ", at most " +
+      const auto value = static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(walker.Unsigned(4)));
+      if (value < 0 || value > field.limit) {
+        return Malformed("count " + std::to_string(value) + ", at most " +
                          std::to_string(field.limit));
       }
+      count = static_cast<std::size_t>(value);
     } else if (!SkipField(walker, field, field.repeated ? count : 1)) {
       return Malformed("truncated, or a bad or too long string");
     }

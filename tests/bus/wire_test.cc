@@ -161,8 +161,9 @@ TYPED_TEST(EveryMessageTypeTest, NothingIsReadBeyondACut) {
 // Layouts of this test's own, with any fingerprint.
 constexpr std::int64_t kFingerprint = 5;
 Bytes WithFingerprint(const Bytes& rest) {
-  Bytes bytes = {0, 0, 0, 0, 0, 0, 0, 5};
-  bytes.insert(bytes.end(), rest.begin(), rest.end());
+  Bytes bytes(8 + rest.size());
+  bytes[7] = kFingerprint;
+  std::ranges::copy(rest, bytes.begin() + 8);
   return bytes;
 }
 bool Fits(std::string_view layout, const Bytes& rest) {

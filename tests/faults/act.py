@@ -23,13 +23,18 @@ def act(one, rig):
     result["failures"] += saw["violations"]
     result["failures"] += [f"invariant 1: a baseline waited {latency:.3f} s for its route"
                            for latency in saw["latencies_s"] if latency > one.limit_s]
+    for what in ("advice", "verdicts", "baselines"):
+        unheard = saw["counts"].get(what + "_not_heard", 0)
+        if unheard and not one.lossy:
+            result["failures"].append(f"invariant 5: {unheard} deployments whose {what} nobody "
+                                      "heard")
     if not result["failures"] and not saw["counts"].get("judged"):
         result["failures"].append("the observer saw no route: the row shows nothing")
     result["injected"] = rig.injected
     if saw["latencies_s"]:
         result["worst_ms"] = 1000 * max(saw["latencies_s"])
     return result | {name: saw[name] for name in
-                     ("counts", "requests", "advice_not_heard", "overflown", "slow")}
+                     ("counts", "requests", "overflown", "slow")}
 
 
 def main():

@@ -18,7 +18,7 @@ os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 
 import rows  # noqa: E402 (needs the path above)
 
-MODULES = ["advisor_rows"]
+MODULES = ["advisor_rows", "process_rows", "network_rows"]
 SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc",
            "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
            ' && exec "$@"', "row"]

@@ -100,6 +100,8 @@ class Rig:
         """Starts the set and serves a first route."""
         self.start(*SET, *more)
         self.serve(within=10)
+        for name in (*SET, *more):
+            self.await_(lambda: name in self.status, 5, f"no heartbeat of {name}")
 
     def revive(self, *names):
         """What a supervisor does (systemd: Restart=always)."""
@@ -123,7 +125,8 @@ class Rig:
             for heard in self.deployed_bus.heard():
                 self._take(heard.channel, bus.decode(heard))
             for heard in self.advice_bus.heard(100):
-                self._take(heard.channel, bus.decode(heard))
+                if heard.channel == "TERRA_ADVICE":
+                    self._take(heard.channel, bus.decode(heard))
             if left <= 0:
                 return
 

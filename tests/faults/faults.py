@@ -18,7 +18,7 @@ os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 
 import rows  # noqa: E402 (needs the path above)
 
-MODULES = ["advisor_rows", "process_rows", "network_rows"]
+MODULES = ["advisor_rows", "process_rows", "network_rows", "map_rows", "disk_rows", "machine_rows"]
 SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc",
            "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
            ' && exec "$@"', "row"]
@@ -79,6 +79,7 @@ def run_all(chosen, arguments):
             for failure in result["failures"][1:]:
                 print("      ", failure, flush=True)
         if arguments.tell:
+            print(result.get("counts"), result.get("overflown"))
             print("\n".join(result.get("slow", [])))
         if result["failures"]:
             failed.append(one.name)

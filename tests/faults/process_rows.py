@@ -91,7 +91,7 @@ def all_killed(rig):
     return "served again, whatever the order"
 
 
-@row("two gates", "GATE 22; LCM two gates", ["verifier:one-planner"])
+@row("two gates", "GATE 22; LCM two gates", ["planner:one-gate"])
 def two_gates(rig):
     rig.set_up("searcher")
     rig.define("second", "terra-verifier", "--name", "second")

@@ -87,7 +87,7 @@ class Rig:
 
     def _broken(self, name, flaw, options):
         return [sys.executable, HERE / "flawed" / f"{name}.py", flaw,
-                self.folder / "fields.json", *options]
+                self.folder / "fields.json", *options, "--terra", self.bin / "terra"]
 
     def __getitem__(self, name):
         return self.processes[name]

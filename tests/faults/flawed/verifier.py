@@ -30,7 +30,7 @@ PER_SENDER, IN_ALL = 20, 200  # datagrams a second that are looked at
 FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decoder no-framing
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
-needs-memory one-planner""".split()
+needs-memory one-planner half-alive ends-in-silence""".split()
 
 
 def chain_of(cells):
@@ -66,7 +66,10 @@ class Gate:
 
     def hear(self, heard):
         message = bus.decode(heard)
+        self.spoken_to = time.monotonic()
         if message is None:
+            if self.lacks("needs-memory"):
+                self.files.append(bytearray(256 << 20))
             if self.lacks("no-decoder"):
                 sys.exit("a message that cannot be decoded")
             return
@@ -248,9 +251,8 @@ class Gate:
         self._say(self.message)
 
     def _say(self, message):
-        sent = self.out.overflown, len(self.message["chain"])
-        self.out.say("TERRA_DEPLOYED", message)
-        return sent
+        if not self.lacks("half-alive"):
+            self.out.say("TERRA_DEPLOYED", message)
 
     def repeat(self):
         if self.message and not self.lacks("says-once"):
@@ -272,7 +274,7 @@ class Gate:
     # ---- The loop ----
 
     def run(self):
-        repeat_at = status_at = time.monotonic()
+        repeat_at = status_at = self.spoken_to = time.monotonic()
         while True:
             select.select([self.out, self.advice_bus], [], [], 0.02)
             if self.lacks("reads-all"):
@@ -281,6 +283,8 @@ class Gate:
             for heard in self.out.heard(200):
                 self.hear(heard)
             self._read_advice(200)
+            if self.lacks("ends-in-silence") and time.monotonic() - self.spoken_to > 0.6:
+                sys.exit("nobody speaks")
             now = time.time() if self.lacks("trusts-clock") else time.monotonic()
             if now >= repeat_at:
                 repeat_at = now + REPEAT_S
@@ -316,6 +320,9 @@ def main():
         sys.exit(f"no such flaw: {flaw}")
     with open(sys.argv[2], encoding="ascii") as rows:
         gate = Gate(flaw, [field.Field(one) for one in json.load(rows)])
+    if flaw == "dies-on-send-error":
+        send = gate.out.send
+        gate.out.send = lambda datagram: send(datagram) or sys.exit("cannot send")
     if flaw == "ends-on-signal":
         for number in (signal.SIGCONT, signal.SIGWINCH):
             signal.signal(number, lambda *_: os._exit(4))

@@ -132,6 +132,34 @@ attacker("bytes", "GATE 5; LCM hostile bytes, version skew", ["verifier:no-decod
 attacker("datagrams", "GATE 6; LCM hostile UDP, oversize", ["verifier:no-framing"])
 
 
+@row("hostile bytes on the deployed port", "GATE 5; LCM hostile bytes", ["verifier:no-decoder"])
+def hostile_on_the_deployed_bus(rig):
+    rig.set_up("searcher", "logger")
+    served = attacked(rig, LIES["bytes"], to="deployed")
+    rig.alive("searcher", "logger")
+    return f"{served} of {served} requests served; refused and counted"
+
+
+@row("the fragment that ends every subscriber by liblcm 1.3.1", "GATE 6; LCM offset wrap",
+     ["nobody restarts"], limit_s=4.0)
+def offset_wrap(rig):
+    rig.set_up("searcher", "logger")
+    ended = 0
+    for _ in range(3):
+        rig.define("chaos", "terra-chaos", "--offset-wrap", "--to", "deployed", "--rate", "50",
+                   "--for", "1")
+        rig.start("chaos")
+        rig.await_(lambda: not rig["chaos"].running(), 5, "terra-chaos does not end")
+        dead = [name for name in ("map", "planner", "verifier", "searcher", "logger")
+                if not rig[name].running()]
+        require(bool(dead), "it ends nobody: liblcm may be repaired, and this row with it")
+        ended += len(dead)
+        rig.injected += int(re.findall(r"(\d+) misdeeds", rig["chaos"].output())[-1])
+        rig.revive(*dead)
+        rig.serve(4)
+    return f"known limit, trusted bus: {ended} processes end, are restarted, and serve again"
+
+
 def flooder(name, flags):
     @row(f"advice flood: {name}", "GATE 8; LCM floods", ["verifier:reads-all"], lossy=True)
     def flood(rig):

@@ -151,18 +151,19 @@ def advisor_flaps(rig):
     return "every request is served"
 
 
-@row("logger killed (-9), stopped, gone", "GATE 17; LCM logger kill -9",
+@row("logger killed (-9, SIGHUP), stopped, gone", "GATE 17; LCM logger kill -9, SIGHUP",
      ["logger:writes-at-the-end"])
 def logger_killed(rig):
     rig.log.mkdir(exist_ok=True)
     rig.set_up("searcher", "logger")
-    for _ in range(5):
+    for i in range(6):
         rig.status.pop("logger", None)
         rig.serve()
         rig.await_(lambda: rig.counter("logger", "acknowledged") > 0, 4,
                    "the logger acknowledges nothing")
         acknowledged = rig.counter("logger", "acknowledged")
-        rig["logger"].kill()
+        os.kill(rig["logger"].pid, signal.SIGHUP if i % 2 else signal.SIGKILL)
+        rig.await_(lambda: not rig["logger"].running(), 2, "the logger does not end")
         rig.injected += 1
         written = events_in(rig, newest_log(rig))
         require(written >= acknowledged, f"{acknowledged} events acknowledged, {written} on disk")

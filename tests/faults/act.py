@@ -4,6 +4,7 @@ import argparse
 import importlib
 import json
 import pathlib
+import signal
 import traceback
 
 import faults
@@ -45,6 +46,7 @@ def main():
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--flaw", default="")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # (nohup passes it on as ignored)
     for module in faults.MODULES:
         importlib.import_module(module)
     one = next(one for one in rows.ROWS if one.name == arguments.row)

@@ -157,6 +157,7 @@ def offset_wrap(rig):
         rig.injected += int(re.findall(r"(\d+) misdeeds", rig["chaos"].output())[-1])
         rig.revive(*dead)
         rig.serve(4)
+        rig.alive(*dead)
     return f"known limit, trusted bus: {ended} processes end, are restarted, and serve again"
 
 

@@ -98,7 +98,8 @@ def run_mutants(chosen, arguments):
                            if ":" in flaw and not arguments.flaw})
         for flaw in [*controls, *one.flaws]:
             failures = run_row(one, arguments, flaw)["failures"]
-            as_meant = bool(failures) == (flaw not in controls)
+            as_meant = (bool(failures) == (flaw not in controls)
+                        and not "".join(failures).startswith("Traceback"))
             wrong += not as_meant
             line = [one.name, flaw, " ".join((failures or ["passes"])[0].split())[:160]
                     + ("" if as_meant else "  <-- NOT AS MEANT")]

@@ -44,7 +44,7 @@ class Gate:
     def __init__(self, flaw, fields):
         self.flaw, self.fields = flaw, fields
         self.out = bus.Tap(rig.PORT)
-        self.advice_bus = bus.Tap(rig.PORT + 1)
+        self.advice_bus = bus.Tap(rig.PORT + 1, buffer_bytes=1 << 20)
         self.header = self.known = None
         self.request, self.replaced = None, collections.deque(maxlen=64)
         self.baseline = self.baseline_cost = None

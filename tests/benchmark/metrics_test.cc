@@ -160,6 +160,129 @@ TEST(Metrics, OtherRepeatsAreShownApart) {
   EXPECT_DOUBLE_EQ(figures.unstable, 0.5);
 }
 
+TEST(Metrics, RatesHaveWilsonIntervals) {
+  // 3 lower of 10: see the test of WilsonRate.
+  std::vector<Score> scores;
+  for (int i = 0; i < 10; ++i) {
+    scores.push_back(
+        Case("c" + std::to_string(i), AttemptKind::kPropose, i < 3 ? 90 : 100));
+  }
+  const Metrics m = ComputeMetrics(scores, kRefiner);
+  for (const auto& rate : {m.fir, m.asr}) {
+    EXPECT_NEAR(rate->low, 0.1077913, 1e-7);
+    EXPECT_NEAR(rate->high, 0.6032219, 1e-7);
+  }
+  // 7 of 10 is the mirror image; 10 of 10 begins at 10 / (10 + z^2).
+  EXPECT_NEAR(m.vnsr->low, 1 - 0.6032219, 1e-7);
+  EXPECT_NEAR(m.ndr->low, 10 / 13.841459, 1e-6);
+  EXPECT_NEAR(m.validity->low, 10 / 13.841459, 1e-6);
+  EXPECT_NEAR(m.gap_rate->low, 10 / 13.841459, 1e-6);
+  EXPECT_NEAR(m.isr->high, 3.841459 / 13.841459, 1e-6);
+}
+
+// Five pairs of cases, of which the first pair alone recovers its whole gap.
+std::vector<Score> FivePairs() {
+  std::vector<Score> scores;
+  for (int i = 0; i < 10; ++i) {
+    scores.push_back(
+        Case("c" + std::to_string(i), AttemptKind::kPropose, i < 2 ? 80 : 90));
+    scores.back().oracle_cost = i < 2 ? 80 : 90;
+  }
+  return scores;
+}
+
+std::vector<Score> BySequence(std::vector<Score> scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    scores[i].cluster = "trail-" + std::to_string(i / 2);
+  }
+  return scores;
+}
+
+TEST(Metrics, MeansAreResampledByCase) {
+  // Of ten cases two have 0.2, the others 0.1. Their number in a resample is
+  // binomial (10, 1/5): at most 4 with chance 0.967, at most 5 with 0.994; none
+  // with 0.107.
+  const Metrics m = ComputeMetrics(FivePairs(), kRefiner);
+  for (const auto& mean : {m.acr, m.mean_gap}) {
+    EXPECT_DOUBLE_EQ(mean->value, 0.12);
+    EXPECT_NEAR(mean->low, 0.10, 1e-12);
+    EXPECT_NEAR(mean->high, 0.15, 1e-12);
+  }
+}
+
+TEST(Metrics, MeansOfRugdAreResampledBySequence) {
+  // The first of five sequences has 0.2 twice. How often it is drawn is
+  // binomial (5, 1/5), 97.5 % quantile 3: (3 x 0.2 + 2 x 0.1) / 5.
+  const Metrics m = ComputeMetrics(BySequence(FivePairs()), kRefiner);
+  for (const auto& mean : {m.acr, m.mean_gap}) {
+    EXPECT_DOUBLE_EQ(mean->value, 0.12);
+    EXPECT_NEAR(mean->low, 0.10, 1e-12);
+    EXPECT_NEAR(mean->high, 0.16, 1e-12);
+  }
+}
+
+TEST(Metrics, RecoveryOfRugdIsResampledBySequence) {
+  // Recovered: all of the gap in the first sequence, half of it elsewhere.
+  std::vector<Score> scores = FivePairs();
+  for (Score& score : scores) score.oracle_cost = 80;
+  const Metrics by_case = ComputeMetrics(scores, kRefiner);
+  EXPECT_DOUBLE_EQ(by_case.mogr->value, 0.6);
+  EXPECT_NEAR(by_case.mogr->high, (5 * 1 + 5 * 0.5) / 10, 1e-12);
+  const Metrics by_sequence = ComputeMetrics(BySequence(scores), kRefiner);
+  EXPECT_DOUBLE_EQ(by_sequence.mogr->value, 0.6);
+  EXPECT_NEAR(by_sequence.mogr->low, 0.5, 1e-12);
+  EXPECT_NEAR(by_sequence.mogr->high, (3 * 1 + 2 * 0.5) / 5, 1e-12);
+}
+
+TEST(Metrics, AnswersFromFilesHaveNoTimeOfTheModel) {
+  std::vector<Score> scores = AdvisorScores();
+  for (Score& score : scores) score.t_det = 0.5;
+  scores[3].t_llm = kImpassable;
+  const Metrics m = ComputeMetrics(scores, kAdvisor);
+  EXPECT_DOUBLE_EQ(*m.det_median, 0.5);
+  EXPECT_FALSE(m.llm_median || m.e2e_median || m.e2e_p95 || m.fps);
+}
+
+TEST(Metrics, TheSameCaseCountsInEveryStageOfTheTimes) {
+  // 21 cases: p95 is the 20th of the sums, rank ceil(0.95 x 21).
+  std::vector<Score> scores;
+  for (int i = 1; i <= 21; ++i) {
+    scores.push_back(Case("c" + std::to_string(i), AttemptKind::kRetain, 100));
+    scores.back().t_prep = 22 - i;
+    scores.back().t_det = 2 * i;
+  }
+  const Metrics m = ComputeMetrics(scores, kAdvisor);
+  EXPECT_DOUBLE_EQ(*m.prep_median, 11);
+  EXPECT_DOUBLE_EQ(*m.det_median, 22);
+  EXPECT_DOUBLE_EQ(*m.e2e_median, 33);
+  EXPECT_DOUBLE_EQ(*m.e2e_p95, 42);  // 22 + i, i = 20.
+  EXPECT_DOUBLE_EQ(*m.fps, 21 / (21 * 33.0));
+}
+
+TEST(ComparePaired, ResamplesTheDifferencesBySequence) {
+  // Differences of recovery: 0.5 in the first of five sequences, else 0.
+  std::vector<Score> first = FivePairs();
+  std::vector<Score> second = FivePairs();
+  for (std::size_t i = 0; i < 10; ++i) {
+    first[i].oracle_cost = second[i].oracle_cost = 80;
+    second[i].final_cost = 90;
+  }
+  const Comparison by_case = ComparePaired(first, kRefiner, second, kRefiner);
+  EXPECT_DOUBLE_EQ(by_case.mogr_difference->value, 0.1);
+  EXPECT_NEAR(by_case.mogr_difference->high, 5 * 0.5 / 10, 1e-12);
+  const Comparison by_sequence =
+      ComparePaired(BySequence(first), kRefiner, BySequence(second), kRefiner);
+  EXPECT_DOUBLE_EQ(by_sequence.mogr_difference->value, 0.1);
+  EXPECT_NEAR(by_sequence.mogr_difference->low, 0, 1e-12);
+  EXPECT_NEAR(by_sequence.mogr_difference->high, 3 * 0.5 / 5, 1e-12);
+}
+
+TEST(ComparePaired, GivesNoRecoveryToMethodsWithoutFallback) {
+  const std::vector<Score> scores = FivePairs();
+  EXPECT_FALSE(ComparePaired(scores, kRefiner, scores, kDirect)
+                   .mogr_difference.has_value());
+}
+
 TEST(ComparePaired, CountsTheCasesInWhichOnlyOneIsLower) {
   // Lower in: first a b c; second c d. Case e has only the second.
   const std::vector<Score> first = {Case("a", AttemptKind::kPropose, 90),

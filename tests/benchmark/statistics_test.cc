@@ -60,6 +60,40 @@ TEST(Bootstrap, OfTwoValuesSpansThemBoth) {
   EXPECT_DOUBLE_EQ(mean.high, 1);
 }
 
+// Of five clusters one stands out, so the number of times it is drawn is
+// binomial (5, 1/5): at most 2 times with chance 0.942, at most 3 times with
+// 0.993. The 97.5 % quantile is 3 times, the 2.5 % quantile 0 times (0.328).
+TEST(Bootstrap, EndsAtTheQuantilesOfTheBinomialDistribution) {
+  const Estimate one = BootstrapMean(
+      std::array<Cluster, 5>{{{0, 1}, {0, 1}, {5, 1}, {0, 1}, {0, 1}}});
+  EXPECT_DOUBLE_EQ(one.value, 1);
+  EXPECT_DOUBLE_EQ(one.low, 0);
+  EXPECT_DOUBLE_EQ(one.high, 3);
+  const Estimate four = BootstrapMean(
+      std::array<Cluster, 5>{{{5, 1}, {5, 1}, {0, 1}, {5, 1}, {5, 1}}});
+  EXPECT_DOUBLE_EQ(four.value, 4);
+  EXPECT_DOUBLE_EQ(four.low, 2);
+  EXPECT_DOUBLE_EQ(four.high, 5);
+}
+
+TEST(Bootstrap, WeighsClustersByTheirTerms) {
+  // The cluster that stands out has 3 terms of 1, the others one of 0: drawn 3
+  // times of 5 the mean is 9 / (9 + 2).
+  const Estimate mean = BootstrapMean(
+      std::array<Cluster, 5>{{{3, 3}, {0, 1}, {0, 1}, {0, 1}, {0, 1}}});
+  EXPECT_DOUBLE_EQ(mean.value, 3.0 / 7);
+  EXPECT_DOUBLE_EQ(mean.low, 0);
+  EXPECT_DOUBLE_EQ(mean.high, 9.0 / 11);
+}
+
+TEST(Bootstrap, LeavesOutResamplesWithoutATerm) {
+  // One cluster of two has terms: all resamples that draw it agree.
+  const Estimate mean =
+      BootstrapMean(std::array<Cluster, 2>{{{0.5, 1}, {0, 0}}});
+  EXPECT_DOUBLE_EQ(mean.low, 0.5);
+  EXPECT_DOUBLE_EQ(mean.high, 0.5);
+}
+
 TEST(Bootstrap, OfManyValuesComesNearTheNormalInterval) {
   std::vector<Cluster> clusters;
   for (int i = 0; i < 400; ++i) clusters.push_back({i % 2 == 0 ? 0.0 : 1.0, 1});

@@ -89,7 +89,7 @@ def folder_read_only(rig):
 
 
 @row("logger stopped (SIGSTOP) for 2 s under load", "GATE 17 (slow logger)",
-     ["verifier:waits-for-advice", "logger:writes-at-the-end"])
+     ["logger:writes-at-the-end"])
 def logger_stopped(rig):
     rig.set_up("searcher", "logger")
     rig["logger"].stop()

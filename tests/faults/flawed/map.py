@@ -19,7 +19,7 @@ import field
 import rig
 
 FLAWS = "none sends-no-tile ends-on-a-bad-file".split()
-SIDE = 64
+SIDE = 128  # of a tile
 _ZSTD = ctypes.CDLL("libzstd.so.1")
 _ZSTD.ZSTD_compress.restype = ctypes.c_size_t
 

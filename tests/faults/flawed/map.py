@@ -63,7 +63,7 @@ class Server:
         self.header = {
             "map_revision": self.revision, "width": field.SIDE, "height": field.SIDE,
             "cell_size_m": 1.0, "num_terrains": len(costs), "terrain_id": list(range(len(costs))),
-            "terrain_cost": costs, "terrain_rgb": [0] * len(costs),
+            "terrain_cost": costs, "terrain_rgb": list(range(len(costs))),
             "terrain_name": [f"t{i}" for i in range(len(costs))], "corner_cutting": 1,
             "clearance_cells": 0, "tile_side": SIDE, "num_tiles": len(digests),
             "tile_digest": digests}

@@ -64,11 +64,7 @@ class AnthropicFormat : public WireFormat {
         CountOr0(usage, "output_tokens"),
         CountOr0(MemberOf(usage, "output_tokens_details"), "thinking_tokens")};
     // Thinking blocks may come first; only text blocks are the answer.
-    for (const json& block : reply.at("content")) {
-      if (TextOr(block, "type") == "text") {
-        result.text += block.at("text").get<std::string>();
-      }
-    }
+    result.text = ContentText(reply.at("content"), {"text"});
     const std::string stop = TextOr(reply, "stop_reason");
     if (stop == "max_tokens" || stop == "model_context_window_exceeded") {
       result.status = ReplyStatus::kTruncated;

@@ -69,7 +69,8 @@ class ChatFormat : public WireFormat {
                              "reasoning_tokens")};
     const json& choice = reply.at("choices").at(0);
     const json& message = choice.at("message");
-    result.text = WithoutThinking(TextOr(message, "content"));
+    result.text =
+        WithoutThinking(ContentText(MemberOf(message, "content"), {"text"}));
     const std::string refusal = TextOr(message, "refusal");
     const std::string finish = TextOr(choice, "finish_reason");
     if (finish == "length") {

@@ -80,7 +80,7 @@ class GeminiFormat : public WireFormat {
       if (MemberOf(part, "thought") != true)
         result.text += TextOr(part, "text");
     }
-    const std::string finish = TextOr(candidate, "finishReason", "STOP");
+    const std::string finish = Upper(TextOr(candidate, "finishReason", "STOP"));
     if (finish == "STOP") {
       result.status = ReplyStatus::kAnswered;
     } else {

@@ -63,11 +63,13 @@ class OpenAiFormat : public WireFormat {
           code == "server_error" || code == "rate_limit_exceeded";
       return result;
     }
-    if (status != "completed" && status != "incomplete") {
-      result.error = "no final status in the reply";
+    // Servers that imitate this form may leave the status out.
+    const bool final =
+        status == "completed" || status == "incomplete" || status.empty();
+    if (!final || !ReadOutput(reply, result, !status.empty())) {
+      result.error = "no final status and answer in the reply";
       return result;
     }
-    ReadOutput(reply.at("output"), result);
     if (status == "incomplete") {
       const std::string reason =
           TextOr(MemberOf(reply, "incomplete_details"), "reason");
@@ -85,30 +87,41 @@ class OpenAiFormat : public WireFormat {
 
  private:
   /// Joins the text parts of all messages; where one is marked as the final
-  /// answer, only of those, so that no commentary is glued to a Yes.
-  static void ReadOutput(const json& output, WireReply& result) {
+  /// answer, only of those, so that no commentary is glued to a Yes. False
+  /// where there is no output, or no message where one is due.
+  static bool ReadOutput(const json& reply, WireReply& result,
+                         bool may_be_empty) {
+    const json& output = MemberOf(reply, "output");
+    const json& joined = MemberOf(reply, "output_text");
+    if (!output.is_array() && !joined.is_string()) return false;
     bool has_final = false;
     for (const json& item : output) {
       has_final = has_final || TextOr(item, "phase") == "final_answer";
     }
+    bool has_message = false;
     std::string refusal;
     for (const json& item : output) {
       if (TextOr(item, "type") != "message" ||
           (has_final && TextOr(item, "phase") != "final_answer")) {
         continue;
       }
-      for (const json& part : item.at("content")) {
-        result.text += TextOr(part, "type") == "output_text"
-                           ? part.at("text").get<std::string>()
-                           : "";
-        refusal += TextOr(part, "refusal");
-      }
+      has_message = true;
+      const json& content = item.at("content");
+      result.text += ContentText(content, {"output_text", "text"});
+      for (const json& part : content) refusal += TextOr(part, "refusal");
     }
+    if (!has_message && joined.is_string()) {
+      // Not on the provider's wire: the SDKs add it, and some servers too.
+      has_message = true;
+      result.text = joined.get<std::string>();
+    }
+    if (!has_message && !may_be_empty) return false;
     result.status = ReplyStatus::kAnswered;
     if (result.text.empty() && !refusal.empty()) {
       result.status = ReplyStatus::kRefused;
       result.error = refusal;
     }
+    return true;
   }
 };
 

@@ -11,6 +11,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include "advisor/endpoint_url.h"
 #include "advisor/interruptible_wait.h"
 
 namespace terra::advisor {
@@ -47,15 +48,6 @@ NoAnswer ReasonOf(const TryOutcome& outcome) {
   }
 }
 
-/// The path begins with the version ("/v1"), which many people write at the end
-/// of a base address too.
-std::string WithoutVersion(std::string url, const std::string& path) {
-  while (url.ends_with('/')) url.pop_back();
-  const std::string version = path.substr(0, path.find('/', 1));
-  if (url.ends_with(version)) url.resize(url.size() - version.size());
-  return url;
-}
-
 /// What the person who started this can do about it; often nothing.
 std::string Remedy(const TryOutcome& outcome, const std::string& url,
                    const std::string& model, const std::string& key_advice) {
@@ -68,6 +60,7 @@ std::string Remedy(const TryOutcome& outcome, const std::string& url,
     case 403:
       return "; " + key_advice;
     case 404:
+    case 405:
       return "; check --base-url (" + url + ") and --model (" + model + ")";
     default:
       return outcome.http_status < 300
@@ -108,7 +101,6 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   }
   const bool own_url = full.base_url.empty();
   if (own_url) full.base_url = format->default_base_url();
-  full.base_url = WithoutVersion(full.base_url, format->Path(full.settings));
   const auto endpoint = CheckBaseUrl(full.base_url);
   if (!endpoint) return endpoint.error();
 
@@ -148,7 +140,7 @@ ProviderClient::ProviderClient(std::unique_ptr<WireFormat> format,
 
 LlmReply ProviderClient::Ask(const LlmRequest& request, std::stop_token stop) {
   HttpRequest http;
-  http.url = options_.base_url + format_->Path(options_.settings);
+  http.url = EndpointUrl(options_.base_url, format_->Path(options_.settings));
   http.headers = format_->Headers(options_.settings, key_);
   http.body =
       format_->Body(request, options_.settings)

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -55,6 +58,22 @@ Int IntegerAt(const Json& object, const char* key) {
         501, std::string(key) + " is no whole number in range", &value);
   }
   return value.template get<Int>();
+}
+
+/// The text of a message: one string, or parts of which those of the given
+/// types are joined. Compatible servers differ in which of the two they send.
+/// Throws nlohmann::json::exception for anything else but null.
+inline std::string ContentText(const nlohmann::json& content,
+                               std::initializer_list<std::string_view> types) {
+  if (content.is_string()) return content.get<std::string>();
+  std::string text;
+  for (const nlohmann::json& part : content) {
+    const std::string type = part.at("type").get<std::string>();
+    if (std::find(types.begin(), types.end(), type) != types.end()) {
+      text += part.at("text").get<std::string>();
+    }
+  }
+  return text;
 }
 
 inline std::string DataUri(const EncodedPicture& picture) {

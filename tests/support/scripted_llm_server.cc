@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -12,13 +14,10 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
-#include <nlohmann/json.hpp>
 #include <sys/socket.h>
 
 namespace terra::testing {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::size_t kRequestsKept = 64;
 constexpr std::size_t kMaxRequestBytes = 64u << 20;
@@ -87,6 +86,40 @@ std::optional<SeenRequest> TakeRequest(int socket, std::string& buffer) {
   return request;
 }
 
+std::string Head(const ScriptedReply& reply) {
+  const bool old = reply.framing == Framing::kUntilClose;
+  std::string head = std::string(old ? "HTTP/1.0 " : "HTTP/1.1 ") +
+                     std::to_string(reply.status) + " Scripted\r\n";
+  if (!reply.content_type.empty()) {
+    head += "content-type: " + reply.content_type + "\r\n";
+  }
+  if (reply.framing == Framing::kLength) {
+    head += "content-length: " + std::to_string(reply.body.size()) + "\r\n";
+  } else if (reply.framing == Framing::kChunked) {
+    head += "transfer-encoding: chunked\r\n";
+  }
+  for (const auto& [name, value] : reply.headers) {
+    head += name + ": " + value + "\r\n";
+  }
+  return head + "\r\n";
+}
+
+/// The first bytes of the body as they go over the wire; chunks of 16 bytes,
+/// the last one missing where the body is cut.
+std::string Framed(const ScriptedReply& reply, std::size_t bytes) {
+  if (reply.framing != Framing::kChunked) return reply.body.substr(0, bytes);
+  constexpr std::size_t kChunk = 16;
+  std::string framed;
+  for (std::size_t at = 0; at < bytes; at += kChunk) {
+    const std::string chunk =
+        reply.body.substr(at, std::min(kChunk, bytes - at));
+    std::array<char, 24> size{};
+    std::snprintf(size.data(), size.size(), "%zx;x=y\r\n", chunk.size());
+    framed += size.data() + chunk + "\r\n";
+  }
+  return bytes < reply.body.size() ? framed : framed + "0\r\nx-end: 1\r\n\r\n";
+}
+
 }  // namespace
 
 std::string SeenRequest::Header(const std::string& name) const {
@@ -94,65 +127,6 @@ std::string SeenRequest::Header(const std::string& name) const {
     if (key == name) return value;
   }
   return "";
-}
-
-std::string ReplyBody(const std::string& provider, const std::string& text) {
-  if (provider == "openai") {
-    return json{
-        {"id", "resp_1"},
-        {"object", "response"},
-        {"model", "scripted"},
-        {"status", "completed"},
-        {"output",
-         json::array(
-             {json{{"type", "reasoning"}, {"summary", json::array()}},
-              json{{"type", "message"},
-                   {"role", "assistant"},
-                   {"content", json::array({json{{"type", "output_text"},
-                                                 {"text", text}}})}}})},
-        {"usage", {{"input_tokens", 1000}, {"output_tokens", 20}}}}
-        .dump();
-  }
-  if (provider == "anthropic") {
-    return json{
-        {"id", "msg_1"},
-        {"type", "message"},
-        {"model", "scripted"},
-        {"content", json::array({json{{"type", "thinking"}, {"thinking", ""}},
-                                 json{{"type", "text"}, {"text", text}}})},
-        {"stop_reason", "end_turn"},
-        {"usage", {{"input_tokens", 1000}, {"output_tokens", 20}}}}
-        .dump();
-  }
-  if (provider == "gemini") {
-    return json{
-        {"candidates",
-         json::array({json{
-             {"content",
-              {{"role", "model"},
-               {"parts", json::array({json{{"text", "hm"}, {"thought", true}},
-                                      json{{"text", text}}})}}},
-             {"finishReason", "STOP"}}})},
-        {"usageMetadata",
-         {{"promptTokenCount", 1000}, {"candidatesTokenCount", 20}}},
-        {"modelVersion", "scripted"}}
-        .dump();
-  }
-  return json{
-      {"id", "chat_1"},
-      {"model", "scripted"},
-      {"choices", json::array({json{
-                      {"index", 0},
-                      {"message", {{"role", "assistant"}, {"content", text}}},
-                      {"finish_reason", "stop"}}})},
-      {"usage", {{"prompt_tokens", 1000}, {"completion_tokens", 20}}}}
-      .dump();
-}
-
-std::string ErrorBody(const std::string& provider, const std::string& message) {
-  json error = {{"message", message}, {"type", "scripted_error"}};
-  if (provider == "gemini") error["status"] = "UNAVAILABLE";
-  return json{{"type", "error"}, {"error", error}}.dump();
 }
 
 ScriptedLlmServer::ScriptedLlmServer(std::vector<ScriptedReply> script)
@@ -265,20 +239,12 @@ bool ScriptedLlmServer::Play(int socket, const ScriptedReply& reply) {
     setsockopt(socket, SOL_SOCKET, SO_LINGER, &now, sizeof now);
     return false;
   }
-  std::string head =
-      "HTTP/1.1 " + std::to_string(reply.status) + " Scripted" +
-      "\r\ncontent-type: " + reply.content_type +
-      "\r\ncontent-length: " + std::to_string(reply.body.size()) + "\r\n";
-  for (const auto& [name, value] : reply.headers) {
-    head += name + ": " + value + "\r\n";
-  }
   const auto part = static_cast<std::size_t>(
       static_cast<double>(reply.body.size()) * reply.body_share);
-  if (!SendAll(socket, head + "\r\n" + reply.body.substr(0, part))) {
-    return false;
-  }
+  if (!SendAll(socket, Head(reply) + Framed(reply, part))) return false;
   if (reply.stall) Hold(socket);
-  return part == reply.body.size() && !reply.stall;
+  return part == reply.body.size() && !reply.stall && !reply.close_after &&
+         reply.framing != Framing::kUntilClose;
 }
 
 /// Waits until the other side closes or the server ends.

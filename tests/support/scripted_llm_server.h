@@ -13,17 +13,26 @@
 
 namespace terra::testing {
 
+/// How the body's end is told.
+enum class Framing {
+  kLength,      ///< By content-length.
+  kChunked,     ///< In chunks of 16 bytes, with extensions and a trailer.
+  kUntilClose,  ///< HTTP/1.0: by closing the connection.
+};
+
 /// One step of the script: what the server does with the next request.
 struct ScriptedReply {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;
-  std::string content_type = "application/json";
+  std::string content_type = "application/json";  ///< Empty = not sent.
   std::string body;
-  double delay_s = 0;     ///< Before anything is sent.
-  bool reset = false;     ///< Close with a TCP reset instead of replying.
-  bool silent = false;    ///< Never reply; hold the connection.
-  double body_share = 1;  ///< Send only this share, then close.
-  bool stall = false;     ///< After that share hold the connection instead.
+  Framing framing = Framing::kLength;
+  double delay_s = 0;        ///< Before anything is sent.
+  bool reset = false;        ///< Close with a TCP reset instead of replying.
+  bool silent = false;       ///< Never reply; hold the connection.
+  double body_share = 1;     ///< Send only this share, then close.
+  bool stall = false;        ///< After that share hold the connection instead.
+  bool close_after = false;  ///< Close after the reply without saying so.
 };
 
 /// A request as it came.

@@ -1,0 +1,196 @@
+// Replies in the ways in which servers, those that imitate a provider too, send
+// them.
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/advisor/provider_calls.h"
+
+namespace terra::advisor {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class ProviderAnswerTest : public EveryProviderTest {};
+INSTANTIATE_TEST_SUITE_P(All, ProviderAnswerTest,
+                         ::testing::Values("openai", "gemini", "anthropic",
+                                           "chat"),
+                         [](const auto& tested) {
+                           return tested.param;
+                         });
+
+TEST_P(ProviderAnswerTest, AnswerModelAndTokensAreReadFromTheReply) {
+  ScriptedLlmServer server({Good(GetParam(), "No. [(1, 2), (3, 4)]")});
+  const LlmReply reply = Client(GetParam(), server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.status, ReplyStatus::kAnswered) << reply.error;
+  EXPECT_EQ(reply.text, "No. [(1, 2), (3, 4)]");
+  EXPECT_EQ(reply.model, "scripted");
+  EXPECT_EQ(reply.usage.tokens_in, 1000);
+  EXPECT_EQ(reply.usage.tokens_out, 20);
+  EXPECT_EQ(reply.tries, 1);
+}
+
+TEST_P(ProviderAnswerTest, TheVersionMayStandAtTheEndOfTheBaseAddress) {
+  ScriptedLlmServer server({Good(GetParam())});
+  for (const char* end : {"", "/", "/v1", "/v1/", "/v1beta", "/v1beta//"}) {
+    Client(GetParam(), server.url() + end)->Ask(Question(), {});
+  }
+  const auto seen = server.requests();
+  ASSERT_EQ(seen.size(), 6u);
+  for (const auto& request : seen) EXPECT_EQ(request.path, seen[0].path);
+}
+
+TEST_P(ProviderAnswerTest, EveryFramingOfTheBodyIsRead) {
+  for (const auto framing :
+       {testing::Framing::kChunked, testing::Framing::kUntilClose}) {
+    ScriptedReply reply = Good(GetParam());
+    reply.framing = framing;
+    reply.content_type = "";
+    ScriptedLlmServer server({reply});
+    const LlmReply read = Client(GetParam(), server.url())->Ask(Question(), {});
+    EXPECT_EQ(read.text, "Yes") << read.error;
+    EXPECT_EQ(read.tries, 1);
+  }
+}
+
+// Servers end idle connections; the next call finds a dead one in its hand.
+TEST_P(ProviderAnswerTest, AConnectionThatTheServerClosedIsNoFailure) {
+  ScriptedReply reply = Good(GetParam());
+  reply.close_after = true;
+  ScriptedLlmServer server({reply});
+  auto client = Client(GetParam(), server.url());
+  for (int i = 0; i < 5; ++i) {
+    const LlmReply read = client->Ask(Question(), {});
+    EXPECT_EQ(read.text, "Yes") << read.error;
+    EXPECT_EQ(read.tries, 1);
+  }
+}
+
+TEST(ProviderReplyTest, AChunkedBodyThatIsCutIsAskedForAgain) {
+  ScriptedReply cut = Good("chat");
+  cut.framing = testing::Framing::kChunked;
+  cut.body_share = 0.5;
+  ScriptedLlmServer server({cut, Good("chat")});
+  const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.text, "Yes") << reply.error;
+  EXPECT_EQ(reply.tries, 2);
+}
+
+// The least that imitations of the four forms send.
+TEST_P(ProviderAnswerTest, FieldsThatDecideNothingMayBeMissing) {
+  const std::map<std::string, std::vector<std::string>> bodies = {
+      {"openai",
+       {R"({"output":[{"type":"message","content":"Yes"}]})",
+        R"({"output":[{"type":"message","content":[
+            {"type":"text","text":"Yes"}]}]})",
+        R"({"status":"completed","output":[],"output_text":"Yes"})",
+        R"({"output_text":"Yes","usage":null,"error":null,"more":{}})"}},
+      {"anthropic",
+       {R"({"content":"Yes"})", R"({"content":[{"type":"text","text":"Yes"}]})",
+        R"({"content":[{"type":"text","text":"Yes"}],"stop_reason":null,
+            "usage":{"input_tokens":null,"output_tokens":1.5}})"}},
+      {"gemini",
+       {R"({"candidates":[{"content":{"parts":[{"text":"Yes"}]}}]})",
+        R"({"candidates":[{"finishReason":"stop",
+            "content":{"parts":[{"text":"Yes"}]}}]})"}},
+      {"chat",
+       {R"({"choices":[{"message":{"content":"Yes"}}]})",
+        R"({"choices":[{"message":{"role":"assistant","content":[
+            {"type":"thinking","thinking":[]},
+            {"type":"text","text":"Yes"}]},"finish_reason":null}]})",
+        R"({"choices":[{"message":{"content":"Yes","refusal":null,
+            "reasoning_content":"No?","tool_calls":[]},"logprobs":null}],
+            "error":null,"timings":{"n":1},"usage":{}})"}}};
+  for (const std::string& body : bodies.at(GetParam())) {
+    const WireReply read = MakeWireFormat(GetParam())->ReadReply(body);
+    EXPECT_EQ(read.status, ReplyStatus::kAnswered) << body << read.error;
+    EXPECT_EQ(read.text, "Yes") << body;
+  }
+}
+
+TEST_P(ProviderAnswerTest,
+       AnErrorInsideASuccessIsNamedAndAskedAgainIfItMayPass) {
+  ScriptedReply busy;
+  busy.body = R"({"error":{"code":503,"message":"no instance"}})";
+  ScriptedReply wrong;
+  wrong.body = R"({"error":{"code":400,"message":"no such model"}})";
+  ScriptedLlmServer server({busy, Good(GetParam()), wrong});
+  auto client = Client(GetParam(), server.url());
+  EXPECT_EQ(client->Ask(Question(), {}).tries, 2);
+  const LlmReply reply = client->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kBadReply);
+  EXPECT_THAT(reply.error, HasSubstr("no such model"));
+}
+
+TEST(ProviderReplyTest, TheReasonIsFoundInEveryFormOfError) {
+  for (const std::string body :
+       {R"({"error":{"message":"the reason"}})", R"({"error":"the reason"})",
+        R"([{"error":{"message":"the reason"}}])",
+        R"({"object":"error","message":"the reason"})",
+        R"({"detail":"the reason"})",
+        R"({"detail":[{"loc":["body"],"msg":"the reason"}]})",
+        "\r\nthe reason\nand more", "the reason"}) {
+    ScriptedReply scripted = Failing(400);
+    scripted.body = body;
+    ScriptedLlmServer server({scripted});
+    const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
+    EXPECT_EQ(reply.error, "HTTP 400: the reason") << body;
+  }
+}
+
+TEST(ProviderReplyTest, AStreamIsCalledOne) {
+  ScriptedReply stream;
+  stream.content_type = "text/event-stream";
+  stream.body = "data: {\"choices\":[]}\n\ndata: [DONE]\n\n";
+  ScriptedLlmServer server({stream});
+  const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kBadReply);
+  EXPECT_THAT(reply.error, HasSubstr("event stream"));
+}
+
+TEST(ProviderReplyTest, AWrongContentTypeDoesNotMatter) {
+  ScriptedReply odd = Good("openai");
+  odd.content_type = "text/html; charset=latin1";
+  ScriptedLlmServer server({odd});
+  EXPECT_EQ(Client("openai", server.url())->Ask(Question(), {}).text, "Yes");
+}
+
+TEST(ProviderReplyTest, BodiesThatAreNoReplyAreNoAnswer) {
+  for (const std::string body :
+       {"<html>busy</html>", "", "[1]", "{\"status\": \"completed\"}",
+        "{\"status\":\"completed\",\"output\":\"\xff\"}", "{\"output\": []}"}) {
+    ScriptedReply bad;
+    bad.body = body;
+    bad.content_type = "text/html";
+    ScriptedLlmServer server({bad});
+    const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+    EXPECT_EQ(reply.reason, NoAnswer::kBadReply) << body;
+    EXPECT_EQ(reply.tries, 1) << body;
+    EXPECT_THAT(reply.error, Not(HasSubstr("\xff")));
+  }
+}
+
+TEST(ProviderReplyTest, HugeBodiesAreCutOff) {
+  ScriptedReply huge;
+  huge.body = std::string(16u << 20, ' ');
+  ScriptedLlmServer server({huge});
+  const LlmReply reply = Client("openai", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kTooLarge);
+  EXPECT_EQ(reply.tries, 1);
+}
+
+TEST(ProviderReplyTest, LargeRequestsDoNotWaitForPermission) {
+  ScriptedLlmServer server({Good("openai")});
+  LlmRequest request = Question();
+  request.text.assign(3u << 20, 'x');
+  const LlmReply reply = Client("openai", server.url())->Ask(request, {});
+  EXPECT_EQ(reply.text, "Yes") << reply.error;
+  EXPECT_EQ(server.requests().front().Header("expect"), "");
+}
+
+}  // namespace
+}  // namespace terra::advisor

@@ -11,6 +11,7 @@
 #include "benchmark/plots.h"
 #include "benchmark/report_page.h"
 #include "benchmark/report_selection.h"
+#include "benchmark/rugd.h"
 #include "benchmark/run.h"
 #include "benchmark/run_labels.h"
 #include "terrain/files/whole_file.h"
@@ -147,11 +148,18 @@ class ReportWriter {
       if (!digest.ok()) return digest.error();
       const LoadedRun* run = PictureRun(s, *digest);
       if (run == nullptr) continue;
-      const auto panels = MakePanels(run->folder, *dataset, kPanelsPerGroup);
+      const auto panels = MakePanels(run->folder, *dataset, kPanelsPerGroup,
+                                     FramesOf(*dataset, *run));
       if (!panels.ok()) return panels.error();
       AddPanels(*run, *panels);
     }
     return Done{};
+  }
+
+  // Only frames of RUGD are meant.
+  std::string FramesOf(const Dataset& dataset, const LoadedRun& run) const {
+    if (!IsRugd(run)) return "";
+    return options_.frames.empty() ? RugdFramesOf(dataset) : options_.frames;
   }
 
   // A model's run when there is one, else a refiner's that is no bound.

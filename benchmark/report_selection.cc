@@ -13,20 +13,6 @@ constexpr int kPaperStride = 50;
 
 using Runs = std::vector<LoadedRun>;
 
-bool HasGroup(const LoadedRun& run, const std::string& group) {
-  const std::vector<std::string> groups = GroupsOf(run);
-  return std::find(groups.begin(), groups.end(), group) != groups.end();
-}
-
-bool IsGenerated(const LoadedRun& run) {
-  return HasGroup(run, "easy") || HasGroup(run, "hard");
-}
-
-bool IsRugd(const LoadedRun& run) {
-  return HasGroup(run, "creek") || HasGroup(run, "park") ||
-         HasGroup(run, "trail") || HasGroup(run, "village");
-}
-
 bool IsAdvisedByModel(const LoadedRun& run) {
   return run.description.asks_model && run.description.method == "advisor";
 }

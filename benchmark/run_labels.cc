@@ -14,7 +14,21 @@ std::string Recorded(const LoadedRun& run) {
   return days.empty() ? "" : "; recorded " + days;
 }
 
+bool HasGroup(const LoadedRun& run, const std::string& group) {
+  const std::vector<std::string> groups = GroupsOf(run);
+  return std::find(groups.begin(), groups.end(), group) != groups.end();
+}
+
 }  // namespace
+
+bool IsGenerated(const LoadedRun& run) {
+  return HasGroup(run, "easy") || HasGroup(run, "hard");
+}
+
+bool IsRugd(const LoadedRun& run) {
+  return HasGroup(run, "creek") || HasGroup(run, "park") ||
+         HasGroup(run, "trail") || HasGroup(run, "village");
+}
 
 std::string SettingOf(const LoadedRun& run, const std::string& name,
                       const std::string& otherwise) {

@@ -16,6 +16,10 @@ std::string RowTitle(const LoadedRun& run);
 std::string SettingOf(const LoadedRun& run, const std::string& name,
                       const std::string& otherwise);
 
+/// Is the run on generated maps, or on RUGD? By the groups of its cases.
+bool IsGenerated(const LoadedRun& run);
+bool IsRugd(const LoadedRun& run);
+
 /// Is the model shown all it can be: overlay, route text and reference pair?
 bool HasAllSwitchesOn(const LoadedRun& run);
 

@@ -57,6 +57,7 @@ void KeepReply(const advisor::LlmReply& reply, Attempt& attempt) {
   // time of answers from files.
   attempt.spend = reply.spend_usd.value_or(kImpassable);
   attempt.model = reply.model;
+  attempt.recorded_at = reply.recorded_at;
 }
 
 class LlmMethod : public Method {

@@ -141,13 +141,15 @@ RunDescription MergedDescription(const std::vector<ShardRows>& shards) {
   RunDescription merged = shards.front().description;
   std::set<std::string> models;
   merged.started.clear();
-  merged.jobs = 1;
+  merged.jobs = 0;
+  merged.recorded = {};
   for (const ShardRows& shard : shards) {
     const RunDescription& d = shard.description;
     merged.started.insert(merged.started.end(), d.started.begin(),
                           d.started.end());
     merged.finished = std::max(merged.finished, d.finished);
-    merged.jobs = std::max(merged.jobs, d.jobs);
+    merged.jobs += d.jobs;  // Shards run side by side.
+    merged.recorded.Add(d.recorded);
     models.insert(d.models.begin(), d.models.end());
   }
   std::sort(merged.started.begin(), merged.started.end());

@@ -59,6 +59,7 @@ class MergeTest : public ::testing::Test {
 TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   RunOptions options;
   options.repeats = 2;
+  options.jobs = 1;
   Run("whole", options);
   std::vector<std::string> shards;
   for (int i = 1; i <= 3; ++i) {
@@ -74,6 +75,8 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   const auto runs = LoadRuns({folder_.Path("merged"), folder_.Path("whole")});
   ASSERT_TRUE(runs.ok()) << ErrorMessage(runs);
   EXPECT_TRUE(runs->at(0).complete());
+  // Side by side the shards did not take one case at a time.
+  EXPECT_EQ(runs->at(0).description.jobs, 3);
   EXPECT_EQ(WhyNotComparable(runs->at(0), runs->at(1)), "");
 }
 

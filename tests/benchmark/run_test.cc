@@ -239,5 +239,36 @@ TEST_F(RunTest, AMissingMapEndsTheRunWithItsName) {
       HasSubstr("hard_0002.png"));
 }
 
+TEST_F(RunTest, KeepsWhenReplayedAnswersWereRecorded) {
+  int call = 0;
+  const auto replay = [&](const MethodInput&) {
+    Attempt attempt = Propose({});
+    attempt.recorded_at =
+        ++call == 3 ? "2026-01-02T00:00:00Z"
+                    : "2026-01-0" + std::to_string(3 + call) + "T00:00:00Z";
+    return attempt;
+  };
+  RunOptions options;
+  options.jobs = 1;
+  options.cases = FirstOfEachGroup(dataset_, 2);
+  ASSERT_TRUE(RunMethods(dataset_, options, {Run("replay", replay)}, {}).ok());
+  const RunDescription run =
+      ReadRunDescription(folder_.Path("replay/run.json")).value();
+  EXPECT_EQ(run.recorded.first, "2026-01-02T00:00:00Z");
+  EXPECT_EQ(run.recorded.last, "2026-01-07T00:00:00Z");
+}
+
+TEST_F(RunTest, AResumedRunHasTheMostJobsOfItsParts) {
+  const auto nothing = [](const MethodInput&) {
+    return Attempt{};
+  };
+  for (const int jobs : {2, 1}) {
+    RunOptions options;
+    options.jobs = jobs;
+    ASSERT_TRUE(RunMethods(dataset_, options, {Run("x", nothing)}, {}).ok());
+    EXPECT_EQ(ReadRunDescription(folder_.Path("x/run.json")).value().jobs, 2);
+  }
+}
+
 }  // namespace
 }  // namespace terra::benchmark

@@ -16,11 +16,12 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(RequestToAModel, EndsWithTheReasonWhenTheCallFailed) {
+  // First: it may move to a network of its own.
+  testing::Robot robot{testing::BarMap()};
   testing::ScriptedReply missing;
   missing.status = 404;
   missing.body = testing::ErrorBody("openai", "no such model");
   testing::ScriptedLlmServer server({missing});
-  testing::Robot robot{testing::BarMap()};
   robot.Start("map");
   robot.Start("planner", {"--stride", "20"});
   robot.Start("verifier");

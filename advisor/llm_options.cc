@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bus/number_range.h"
+
 namespace terra::advisor {
 namespace {
 
@@ -17,7 +19,7 @@ void AddLimitOptions(CLI::App& app, CallLimits& limits) {
   app.add_option("--spend-per-hour", limits.spend_per_hour_usd,
                  "At most so many dollars an hour; needs --price; 0 = no limit")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
+      ->check(bus::InRange(0.0, 1e9))
       ->group(group);
   app.add_option("--breaker-failures", limits.breaker_failures,
                  "Failures in succession after which calls pause; 0 = never")
@@ -28,12 +30,12 @@ void AddLimitOptions(CLI::App& app, CallLimits& limits) {
                  "Seconds of the first such pause; it doubles up to "
                  "--breaker-max-wait")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0))
+      ->check(bus::InRange(0.1, 86'400.0))
       ->group(group);
   app.add_option("--breaker-max-wait", limits.breaker_max_wait_s,
                  "Seconds of the longest pause")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 86'400.0))
+      ->check(bus::InRange(0.1, 86'400.0))
       ->group(group);
 }
 
@@ -59,12 +61,12 @@ void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
   app.add_option("--try-timeout", provider.try_timeout_s,
                  "Seconds for one request")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 3'600.0))
+      ->check(bus::InRange(0.1, 3'600.0))
       ->group(group);
   app.add_option("--deadline", provider.deadline_s,
                  "Seconds for a case, retries and waits included")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 604'800.0))
+      ->check(bus::InRange(0.1, 604'800.0))
       ->group(group);
   app.add_option("--retries", provider.retry.max_retries,
                  "Requests after the first one, for passing failures")
@@ -74,7 +76,7 @@ void AddProviderOptions(CLI::App& app, ProviderOptions& provider) {
   app.add_option("--max-retry-wait", provider.retry.max_wait_s,
                  "Seconds; a server that demands a longer wait has failed")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 3'600.0))
+      ->check(bus::InRange(0.0, 3'600.0))
       ->group(group);
 }
 
@@ -150,7 +152,7 @@ void AddPromptOptions(CLI::App& app, MethodOptions& method,
   app.add_option("--noise", method.noise_percent,
                  "Percent of the cells that the model is shown wrongly")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(bus::InRange(0.0, 100.0))
       ->group(group);
   app.add_option("--seed", method.seed,
                  "Of the choice of references and of noise")
@@ -174,7 +176,7 @@ void AddLlmOptions(CLI::App& app, LlmBackendOptions& options) {
                  "Do not ask where the native optimum is not this many percent "
                  "cheaper than the baseline; 0 = always ask")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(bus::InRange(0.0, 100.0))
       ->group("Limits");
   const std::string group = "Model";
   app.add_option("--exchange", service.exchange_folder,

@@ -14,6 +14,7 @@
 
 #include "advisor/sim_answer.h"
 #include "advisor/sim_wire.h"
+#include "bus/number_range.h"
 #include "terrain/files/whole_file.h"
 
 namespace {
@@ -97,7 +98,7 @@ int main(int argc, char** argv) {
   app.add_option("--port-file", port_file, "Write the port here when ready");
   app.add_option("--latency", latency_s, "Seconds that an answer takes")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 600.0));
+      ->check(terra::bus::InRange(0.0, 600.0));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

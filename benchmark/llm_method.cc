@@ -57,6 +57,7 @@ void KeepReply(const advisor::LlmReply& reply, Attempt& attempt) {
   // time of answers from files.
   attempt.spend = reply.spend_usd.value_or(kImpassable);
   attempt.model = reply.model;
+  attempt.recorded_at = reply.recorded_at;
 }
 
 class LlmMethod : public Method {
@@ -159,6 +160,7 @@ MethodInfo InfoOf(const advisor::LlmBackendOptions& options,
                .every_case_attempts = !advisor};
   info.uses_baseline = info.rule.fallback;
   info.asks_model = true;
+  info.several_candidates = options.method.prompt.candidates > 1;
   info.simulated = identity.endpoint_class == "loopback";
   return info;
 }

@@ -110,16 +110,17 @@ Status OrderShards(std::vector<ShardRows>& shards) {
 Result<std::int64_t> CopyRows(const std::vector<ShardRows>& shards,
                               const std::string& path) {
   std::vector<std::ifstream> files;
-  std::string line;
+  std::string header;
   for (const ShardRows& shard : shards) {
     files.emplace_back(ResultsPath(shard.folder), std::ios::binary);
-    std::getline(files.back(), line);  // The header.
+    std::getline(files.back(), header);  // The same in all.
   }
   const std::string unfinished = path + ".part";
   std::ofstream to(unfinished, std::ios::binary | std::ios::trunc);
-  to << ResultsHeader();
+  to << header << "\n";
   const RunDescription& whole = shards.front().description;
   std::int64_t rows = 0;
+  std::string line;
   for (std::int64_t i = 0; i < whole.num_cases; ++i) {
     std::ifstream& from = files[static_cast<std::size_t>(i) % files.size()];
     for (int repeat = 0; repeat < whole.repeats; ++repeat, ++rows) {
@@ -141,13 +142,15 @@ RunDescription MergedDescription(const std::vector<ShardRows>& shards) {
   RunDescription merged = shards.front().description;
   std::set<std::string> models;
   merged.started.clear();
-  merged.jobs = 1;
+  merged.jobs = 0;
+  merged.recorded = {};
   for (const ShardRows& shard : shards) {
     const RunDescription& d = shard.description;
     merged.started.insert(merged.started.end(), d.started.begin(),
                           d.started.end());
     merged.finished = std::max(merged.finished, d.finished);
-    merged.jobs = std::max(merged.jobs, d.jobs);
+    merged.jobs += d.jobs;  // Shards run side by side.
+    merged.recorded.Add(d.recorded);
     models.insert(d.models.begin(), d.models.end());
   }
   std::sort(merged.started.begin(), merged.started.end());

@@ -11,9 +11,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "benchmark/rugd.h"
 #include "benchmark/run_description.h"
 #include "planner/coarse_lattice.h"
+#include "terrain/files/image.h"
 #include "terrain/files/picture.h"
+#include "terrain/files/whole_file.h"
 #include "terrain/segment.h"
 
 namespace terra::benchmark {
@@ -92,49 +95,105 @@ std::string Caption(const CaseResult& r) {
   std::array<char, 160> text{};
   const double gain = 100 * (r.baseline_cost - r.final_cost) / r.baseline_cost;
   std::snprintf(text.data(), text.size(),
-                ": baseline %.1f, deployed %.1f (-%.1f %%), optimum %.1f",
+                ": baseline %.1f, deployed %.1f (-%.2f %%), optimum %.1f",
                 r.baseline_cost, r.final_cost, gain, r.oracle_cost);
   return r.case_id + text.data();
 }
 
-Result<Panel> MakePanel(const Dataset& dataset, const CaseResult& result,
-                        int stride) {
+using FramePaths = std::map<std::string, std::string>;
+
+Result<FramePaths> FindFrames(const std::string& folder) {
+  FramePaths paths;
+  if (folder.empty()) return paths;
+  const auto frames = FindRugdFrames(folder);
+  if (!frames.ok()) return frames.error();
+  for (const RugdFrame& frame : *frames) paths.emplace(frame.name, frame.path);
+  return paths;
+}
+
+Result<cv::Mat> ReadFrame(const std::string& path, cv::Size size) {
+  const Result<std::string> bytes = ReadWholeFile(path, kMaxImageBytes);
+  if (!bytes.ok()) return bytes.error();
+  Result<cv::Mat> frame = DecodePng(*bytes, path);
+  if (!frame.ok()) return frame.error();
+  if (frame->size() != size || frame->type() != CV_8UC3) {
+    return Error{ErrorCode::kInvalid,
+                 path + ": a frame must be 24-bit colour, of its map's size"};
+  }
+  return frame;
+}
+
+void DrawRoutes(cv::Mat& image, const Route& baseline,
+                const Route& final_route) {
+  if (!baseline.empty()) DrawRoute(image, baseline, kBaselineColor);
+  if (!final_route.empty() && final_route != baseline) {
+    DrawRoute(image, final_route, kCandidateColor);
+  }
+  if (baseline.empty()) return;
+  DrawEnd(image, baseline.front(), "S");
+  DrawEnd(image, baseline.back(), "G");
+}
+
+cv::Mat DrawPanel(const TerrainMap& map, const Route& baseline,
+                  const Route& final_route, int stride) {
+  cv::Mat image = TerrainImage(map);
+  DrawGrid(image, stride);
+  DrawRoutes(image, baseline, final_route);
+  return image;
+}
+
+std::string EncodePng(const cv::Mat& image) {
+  std::vector<unsigned char> png;
+  cv::imencode(".png", image, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  return {png.begin(), png.end()};
+}
+
+// The baseline that the run had.
+Route BaselineOf(const RunDescription& run, const TerrainMap& map,
+                 const DatasetCase& c) {
+  planner::LatticeOptions lattice;
+  lattice.stride = run.stride;
+  for (const auto rule :
+       {planner::JointRule::kCell, planner::JointRule::kVisible}) {
+    if (JointsName(rule) == run.joints) lattice.joints = rule;
+  }
+  return planner::PlanOnLattice(map, c.start, c.goal, lattice).waypoints;
+}
+
+Result<Panel> MakePanel(const RunDescription& run, const Dataset& dataset,
+                        const FramePaths& frames, const CaseResult& result) {
   const DatasetCase* c = dataset.Find(result.case_id);
   if (c == nullptr) {
     return Error{ErrorCode::kInvalid,
                  dataset.folder + ": has no case " + result.case_id};
   }
-  const Result<TerrainMap> map = ReadCaseMap(dataset, *c);
+  const CostModel model{run.corner_cutting, run.clearance_cells};
+  const Result<TerrainMap> map = ReadCaseMap(dataset, *c, model);
   if (!map.ok()) return map.error();
-  planner::LatticeOptions lattice;
-  lattice.stride = stride;
-  const Route baseline =
-      planner::PlanOnLattice(*map, c->start, c->goal, lattice).waypoints;
-  return Panel{Caption(result),
-               DrawPanelPng(*map, baseline, result.final_route, stride)};
+  const Route baseline = BaselineOf(run, *map, *c);
+  cv::Mat image = DrawPanel(*map, baseline, result.final_route, run.stride);
+  const auto path = frames.find(result.case_id);
+  if (path != frames.end()) {
+    Result<cv::Mat> frame = ReadFrame(path->second, image.size());
+    if (!frame.ok()) return frame.error();
+    DrawRoutes(*frame, baseline, result.final_route);
+    cv::vconcat(*frame, image.clone(), image);
+  }
+  return Panel{Caption(result), EncodePng(image)};
 }
 
 }  // namespace
 
 std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
                          const Route& final_route, int stride) {
-  cv::Mat image = TerrainImage(map);
-  DrawGrid(image, stride);
-  if (!baseline.empty()) DrawRoute(image, baseline, kBaselineColor);
-  if (!final_route.empty() && final_route != baseline) {
-    DrawRoute(image, final_route, kCandidateColor);
-  }
-  if (!baseline.empty()) {
-    DrawEnd(image, baseline.front(), "S");
-    DrawEnd(image, baseline.back(), "G");
-  }
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  return {png.begin(), png.end()};
+  return EncodePng(DrawPanel(map, baseline, final_route, stride));
 }
 
 Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
-                                      const Dataset& dataset, int per_group) {
+                                      const Dataset& dataset, int per_group,
+                                      const std::string& frames) {
+  const Result<FramePaths> paths = FindFrames(frames);
+  if (!paths.ok()) return paths.error();
   const Result<RunDescription> run =
       ReadRunDescription((fs::path(run_folder) / "run.json").string());
   if (!run.ok()) return run.error();
@@ -160,7 +219,7 @@ Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
   if (!read.ok()) return read.error();
   std::vector<Panel> panels;
   for (const auto& [id, result] : chosen) {
-    Result<Panel> panel = MakePanel(dataset, result, run->stride);
+    Result<Panel> panel = MakePanel(*run, dataset, *paths, result);
     if (!panel.ok()) return panel.error();
     panels.push_back(*std::move(panel));
   }

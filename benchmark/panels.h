@@ -24,9 +24,12 @@ std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
                          const Route& final_route, int stride);
 
 /// Pictures of `per_group` cases of each group of a run: the ones at even
-/// distances in the order of what was gained, the largest gain first.
-/// Errors: the run or a map cannot be read.
+/// distances in the order of what was gained, the largest gain first. With a
+/// folder of camera frames (RUGD; empty = none) the frame of a case's name,
+/// with the same routes, stands above its map.
+/// Errors: the run, a map or a frame cannot be read; a frame of another size.
 Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
-                                      const Dataset& dataset, int per_group);
+                                      const Dataset& dataset, int per_group,
+                                      const std::string& frames);
 
 }  // namespace terra::benchmark

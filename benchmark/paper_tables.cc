@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "benchmark/paper_rows.h"
-#include "terrain/files/csv.h"
+#include "benchmark/run_labels.h"
 
 namespace terra::benchmark {
 namespace {
@@ -44,11 +42,6 @@ std::string Command(const std::string& method, const std::string& backend,
          backend + suffix;
 }
 
-// Recordings name the provider that answered.
-std::string ProviderOf(const LoadedRun& run) {
-  return SettingOf(run, "provider", run.description.backend);
-}
-
 bool Measured(const std::vector<LoadedRun>& runs, const std::string& method,
               const std::string& backend) {
   return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& run) {
@@ -57,35 +50,15 @@ bool Measured(const std::vector<LoadedRun>& runs, const std::string& method,
   });
 }
 
-std::vector<std::string> GroupsOfAll(const std::vector<LoadedRun>& runs) {
-  std::vector<std::string> groups;
-  for (const LoadedRun& run : runs) {
-    for (const std::string& group : GroupsOf(run)) {
-      if (std::find(groups.begin(), groups.end(), group) == groups.end()) {
-        groups.push_back(group);
-      }
-    }
-  }
-  return groups;
-}
-
-Metrics MetricsOf(const LoadedRun& run, const std::string& group) {
-  return ComputeMetrics(ScoresOfGroup(run, group), run.description.rule);
-}
-
-std::string DatasetText(const std::vector<LoadedRun>& runs) {
-  if (runs.empty()) return "";
-  const RunDescription& d = runs.front().description;
-  return (d.dataset_name.empty() ? "unnamed dataset" : d.dataset_name) +
-         (d.dataset_version.empty() ? "" : " " + d.dataset_version);
-}
-
-constexpr const char* kIntervalNote =
-    "Small figures: 95 % intervals; rates Wilson, means bootstrap over cases "
-    "(10,000 resamples, fixed seed).";
 constexpr const char* kNotTheirMaps =
     "These are not the paper's maps: generated after its description and "
     "calibrated to its gap table.";
+
+// Rounds end at a Yes, an accepted route or the deadline.
+std::string CallsPerCase(const LoadedRun& run) {
+  const std::string rounds = SettingOf(run, "rounds", "1");
+  return rounds == "1" ? "1" : "1 to " + rounds;
+}
 
 void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
                 const std::string& more = "", const std::string& suffix = "") {
@@ -101,43 +74,13 @@ void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
 
 }  // namespace
 
-std::string SettingOf(const LoadedRun& run, const std::string& name,
-                      const std::string& otherwise) {
-  const auto settings = nlohmann::json::parse(run.description.settings_json);
-  const auto found = settings.find(name);
-  if (found == settings.end()) return otherwise;
-  if (found->is_number()) return FormatNumber(found->get<double>());
-  return found->is_string() ? found->get<std::string>() : found->dump();
-}
-
-bool IsPlain(const LoadedRun& run) {
-  return SettingOf(run, "noise", "0") == "0" &&
-         SettingOf(run, "overlay", "true") == "true" &&
-         SettingOf(run, "route_text", "true") == "true" &&
-         SettingOf(run, "rea", "true") == "true";
-}
-
-std::string RowTitle(const LoadedRun& run) {
-  std::string title = run.description.title;
-  if (run.description.asks_model) {
-    std::string models;
-    for (const std::string& model : run.description.models) {
-      models += (models.empty() ? "" : ", ") + model;
-    }
-    title += ": " + (models.empty() ? "model not named" : models) +
-             " (asked for " + SettingOf(run, "model", "?") + ")";
-  }
-  if (run.description.simulated) title += " [SIMULATED]";
-  if (!run.complete()) title += " [incomplete]";
-  return title;
-}
-
 Table ComparisonTable(const std::vector<LoadedRun>& runs,
                       const std::string& group) {
   Table table;
   table.id = "comparison-" + group;
   table.title = "Main comparison, " + group + " subset of " +
-                DatasetText(runs) + ", against the coarse-lattice baseline";
+                (runs.empty() ? "" : DatasetTitle(runs.front().description)) +
+                ", against the coarse-lattice baseline";
   table.columns = {{"Method"},
                    {"N_Lower"},
                    {"N_NonImproving"},
@@ -166,43 +109,13 @@ Table ComparisonTable(const std::vector<LoadedRun>& runs,
   return table;
 }
 
-Table ProposalTable(const std::vector<LoadedRun>& runs,
-                    const std::string& group) {
-  Table table;
-  table.id = "proposals-" + group;
-  table.title = "Proposal quality and recovery, " + group + " subset";
-  table.columns = {
-      {"Method"},           {"N_Path"},           {"No baseline"},
-      {"N_NoAnswer"},       {"N_Invalid"},        {"ASR %", true},
-      {"ISR %", true},      {"ISR strict %"},     {"VNSR %", true},
-      {"Gap rate %", true}, {"Mean gap %", true}, {"MOGR %", true}};
-  TableBlock block;
-  for (const LoadedRun& run : runs) {
-    const Metrics m = MetricsOf(run, group);
-    if (m.paths == 0) continue;
-    TableCell strict = PercentCell(m.strict_isr);
-    strict.low.clear();
-    block.rows.push_back({RowTitle(run), CountCell(m.paths),
-                          CountCell(m.without_baseline), CountCell(m.no_answer),
-                          CountCell(m.invalid), PercentCell(m.asr),
-                          PercentCell(m.isr), strict, PercentCell(m.vnsr),
-                          PercentCell(m.gap_rate), PercentCell(m.mean_gap),
-                          PercentCell(m.mogr)});
-  }
-  table.blocks.push_back(std::move(block));
-  table.notes = {kIntervalNote,
-                 "ISR strict counts answers that were read but not in the "
-                 "exact form as invalid. MOGR is for methods with fallback."};
-  return table;
-}
-
 Table OracleGapTable(const std::vector<LoadedRun>& runs) {
   Table table;
   table.id = "oracle-gap";
   table.title =
       "Gap of the coarse lattice to the native optimum, and how much "
       "of it is recovered, by stride";
-  table.columns = {{"Subset"},           {"Stride"},      {"Method"},
+  table.columns = {{"Subset"},           {"Stride"},      WordColumn("Method"),
                    {"N_Comparable"},     {"N_Gap"},       {"Gap rate %", true},
                    {"Mean gap %", true}, {"MOGR %", true}};
   std::vector<const LoadedRun*> by_stride;
@@ -249,9 +162,10 @@ Table AblationTable(const std::vector<LoadedRun>& runs) {
   Table table;
   table.id = "ablation";
   table.title = "Ablation of what the advisor is shown";
-  table.columns = {{"Setting"},           {"Subset"},      {"Model"},
-                   {"N_Suggested"},       {"ASR %", true}, {"FIR %", true},
-                   {"ACR_lower %", true}, {"ISR %", true}, {"VNSR %", true}};
+  table.columns = {
+      {"Setting"},           WordColumn("Subset"), WordColumn("Model"),
+      {"N_Suggested"},       {"ASR %", true},      {"FIR %", true},
+      {"ACR_lower %", true}, {"ISR %", true},      {"VNSR %", true}};
   struct Setting {
     const char* name;
     const char* overlay;
@@ -308,13 +222,12 @@ Table RugdTable(const std::vector<LoadedRun>& runs) {
   Table table;
   table.id = "rugd";
   table.title = "RUGD semantic-cost transfer, by scene";
-  table.columns = {{"Method"},      {"Scene"},
-                   {"N_Path"},      {"N_Suggested"},
-                   {"N_Lower"},     {"ASR %", true},
-                   {"FIR %", true}, {"ACR_lower %", true},
-                   {"ISR %", true}, {"VNSR %", true},
-                   {"NDR %", true}, {"Final validity %", true},
-                   {"FPS"}};
+  table.columns = {
+      {"Method"},       WordColumn("Scene"),   {"N_Path"},
+      {"N_Suggested"},  {"N_Lower"},           {"ASR %", true},
+      {"FIR %", true},  {"ACR_lower %", true}, {"ISR %", true},
+      {"VNSR %", true}, {"NDR %", true},       {"Final validity %", true},
+      {"FPS"}};
   TableBlock measured;
   measured.heading = "Measured here";
   for (const LoadedRun& run : runs) {
@@ -351,10 +264,11 @@ Table LatencyTable(const std::vector<LoadedRun>& runs) {
   Table table;
   table.id = "latency";
   table.title = "Online latency, one case at a time";
-  table.columns = {
-      {"Method"},   {"Subset"},  {"N_Path"},  {"Online LLM calls / case"},
-      {"T_prep s"}, {"T_llm s"}, {"T_det s"}, {"Median T_e2e s"},
-      {"p95 s"}};
+  table.columns = {{"Method"},   WordColumn("Subset"),
+                   {"N_Path"},   {"Online LLM calls / case"},
+                   {"T_prep s"}, {"T_llm s"},
+                   {"T_det s"},  {"Median T_e2e s"},
+                   {"p95 s"}};
   TableBlock measured;
   measured.heading = "Measured here";
   for (const LoadedRun& run : runs) {
@@ -363,12 +277,12 @@ Table LatencyTable(const std::vector<LoadedRun>& runs) {
       const Metrics m = MetricsOf(run, group);
       if (m.paths == 0) continue;
       const bool model = run.description.asks_model;
-      measured.rows.push_back({RowTitle(run), group, CountCell(m.paths),
-                               model ? "1" : "0", NumberCell(m.prep_median, 4),
-                               model ? NumberCell(m.llm_median, 3) : "-",
-                               NumberCell(m.det_median, 4),
-                               NumberCell(m.e2e_median, 4),
-                               NumberCell(m.e2e_p95, 4)});
+      const std::string calls = model ? CallsPerCase(run) : "0";
+      measured.rows.push_back(
+          {RowTitle(run), group, CountCell(m.paths), calls,
+           SecondsCell(m.prep_median), model ? SecondsCell(m.llm_median) : "-",
+           SecondsCell(m.det_median), SecondsCell(m.e2e_median),
+           SecondsCell(m.e2e_p95)});
     }
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
@@ -386,18 +300,10 @@ Table NoiseTable(const std::vector<LoadedRun>& runs) {
   Table table;
   table.id = "noise";
   table.title = "Noise on the map that the model is shown";
-  table.columns = {{"Method"},
-                   {"Subset"},
-                   {"Noise %"},
-                   {"N_Path"},
-                   {"N_Suggested"},
-                   {"N_Lower"},
-                   {"ASR %", true},
-                   {"ISR %", true},
-                   {"VNSR %", true},
-                   {"FIR %", true},
-                   {"ACR_lower %", true},
-                   {"NDR %", true}};
+  table.columns = {{"Method"},      WordColumn("Subset"),  {"Noise %"},
+                   {"N_Path"},      {"N_Suggested"},       {"N_Lower"},
+                   {"ASR %", true}, {"ISR %", true},       {"VNSR %", true},
+                   {"FIR %", true}, {"ACR_lower %", true}, {"NDR %", true}};
   TableBlock measured;
   measured.heading = "Measured here";
   TableBlock missing;
@@ -433,93 +339,6 @@ Table NoiseTable(const std::vector<LoadedRun>& runs) {
   table.notes = {
       "The first 50 cases of each subset. Baseline, its description "
       "and all checks use the clean map."};
-  return table;
-}
-
-Table PairedTable(const std::vector<LoadedRun>& runs,
-                  const std::string& group) {
-  Table table;
-  table.id = "paired-" + group;
-  table.columns = {{"Method"},        {"Cases"},
-                   {"Only it lower"}, {"Only the other lower"},
-                   {"McNemar p"},     {"MOGR difference %", true}};
-  TableBlock block;
-  if (!runs.empty()) {
-    const LoadedRun& reference = runs.front();
-    table.title =
-        "Paired by case against: " + RowTitle(reference) + " (" + group + ")";
-    const std::vector<Score> others = ScoresOfGroup(reference, group);
-    for (std::size_t i = 1; i < runs.size(); ++i) {
-      const Comparison c =
-          ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
-                        others, reference.description.rule);
-      if (c.cases == 0) continue;
-      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
-                            CountCell(c.only_first_lower),
-                            CountCell(c.only_second_lower),
-                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
-                                               : NumberCell(c.mcnemar_p, 4),
-                            PercentCell(c.mogr_difference)});
-    }
-  }
-  table.blocks.push_back(std::move(block));
-  table.notes = {
-      "McNemar: exact, two-sided, of FIR. MOGR difference: paired "
-      "bootstrap over cases; - for methods without fallback."};
-  return table;
-}
-
-Table JointsTable(const std::vector<LoadedRun>& runs) {
-  Table table;
-  table.id = "joints";
-  table.title =
-      "Sensitivity to the rule that joins start and goal to the "
-      "lattice";
-  table.columns = {{"Joints"},           {"Subset"},
-                   {"Stride"},           {"N_Comparable"},
-                   {"Gap rate %", true}, {"Mean gap %", true}};
-  TableBlock block;
-  for (const LoadedRun& run : runs) {
-    if (run.description.method != "coarse") continue;
-    for (const std::string& group : GroupsOf(run)) {
-      const Metrics m = MetricsOf(run, group);
-      block.rows.push_back({run.description.joints, group,
-                            CountCell(run.description.stride),
-                            CountCell(m.comparable), PercentCell(m.gap_rate),
-                            PercentCell(m.mean_gap)});
-    }
-  }
-  table.blocks.push_back(std::move(block));
-  table.notes = {
-      "2r: nodes within two strides (this project's choice). cell: "
-      "the corners of the enclosing lattice cell. visible: every "
-      "node that a feasible segment reaches."};
-  return table;
-}
-
-Table RunsTable(const std::vector<LoadedRun>& runs) {
-  Table table;
-  table.id = "runs";
-  table.title = "What produced the rows";
-  table.columns = {{"Row"},     {"Folder"}, {"Dataset"}, {"Cases"},
-                   {"Stride"},  {"Joints"}, {"Jobs"},    {"Build"},
-                   {"Started"}, {"Command"}};
-  TableBlock block;
-  for (const LoadedRun& run : runs) {
-    const RunDescription& d = run.description;
-    block.rows.push_back(
-        {RowTitle(run), run.folder,
-         d.dataset_name + " " + d.dataset_version + " " +
-             d.dataset_digest.substr(0, 12),
-         CountCell(static_cast<std::int64_t>(run.scores.size())),
-         CountCell(d.stride), d.joints, CountCell(d.jobs), d.build_id,
-         d.started.empty() ? "" : d.started.front(), d.command_line});
-  }
-  table.blocks.push_back(std::move(block));
-  if (!runs.empty()) {
-    table.notes = {"Machine of the first run: " +
-                   runs.front().description.machine};
-  }
   return table;
 }
 

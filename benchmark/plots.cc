@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "benchmark/paper_rows.h"
-#include "benchmark/paper_tables.h"
+#include "benchmark/run_labels.h"
 
 namespace terra::benchmark {
 namespace {
@@ -73,17 +73,17 @@ struct DotRow {
 // The title, cut to fit beside the plot.
 std::string ShortTitle(const LoadedRun& run) {
   std::string title = RowTitle(run);
-  if (title.size() > 46) title = title.substr(0, 44) + "…";
+  if (title.size() > 56) title = title.substr(0, 54) + "…";
   return title;
 }
 
 std::string DotPlot(const std::vector<DotRow>& rows, const std::string& label) {
-  constexpr double kLeft = 330;
+  constexpr double kLeft = 370;
   constexpr double kWidth = 420;
   constexpr double kStep = 26;
   constexpr double kTop = 26;
   const double bottom = kTop + kStep * static_cast<double>(rows.size());
-  Svg svg(800, static_cast<int>(bottom) + 30, label);
+  Svg svg(840, static_cast<int>(bottom) + 30, label);
   for (int percent = 0; percent <= 100; percent += 20) {
     const double x = kLeft + kWidth * percent / 100;
     svg.Line(x, kTop - 8, x, bottom, kGrid);

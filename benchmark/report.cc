@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <set>
 #include <utility>
 
 #include "advisor/encoding.h"
+#include "benchmark/detail_tables.h"
 #include "benchmark/panels.h"
 #include "benchmark/paper_tables.h"
 #include "benchmark/plots.h"
 #include "benchmark/report_page.h"
+#include "benchmark/report_selection.h"
+#include "benchmark/rugd.h"
 #include "benchmark/run.h"
+#include "benchmark/run_labels.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
@@ -19,134 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPaperStride = 50;
 constexpr int kPanelsPerGroup = 3;
-
-bool HasGroup(const LoadedRun& run, const std::string& group) {
-  const std::vector<std::string> groups = GroupsOf(run);
-  return std::find(groups.begin(), groups.end(), group) != groups.end();
-}
-
-bool IsGenerated(const LoadedRun& run) {
-  return HasGroup(run, "easy") || HasGroup(run, "hard");
-}
-
-bool IsRugd(const LoadedRun& run) {
-  return HasGroup(run, "creek") || HasGroup(run, "park") ||
-         HasGroup(run, "trail") || HasGroup(run, "village");
-}
-
-template <typename Predicate>
-std::vector<LoadedRun> Select(const std::vector<LoadedRun>& runs,
-                              Predicate wanted) {
-  std::vector<LoadedRun> selected;
-  for (const LoadedRun& run : runs) {
-    if (wanted(run)) selected.push_back(run);
-  }
-  return selected;
-}
-
-// The largest set of runs that can stand in one table.
-std::vector<LoadedRun> LargestComparable(const std::vector<LoadedRun>& runs) {
-  std::vector<LoadedRun> best;
-  std::size_t best_cases = 0;
-  for (const LoadedRun& first : runs) {
-    std::vector<LoadedRun> set = Select(runs, [&](const LoadedRun& run) {
-      return WhyNotComparable(first, run).empty();
-    });
-    std::size_t cases = 0;
-    for (const LoadedRun& run : set) cases += run.scores.size();
-    if (cases > best_cases) {
-      best_cases = cases;
-      best = std::move(set);
-    }
-  }
-  return best;
-}
-
-bool SameCases(const LoadedRun& a, const LoadedRun& b) {
-  return a.description.dataset_digest == b.description.dataset_digest &&
-         a.description.case_list_digest == b.description.case_list_digest;
-}
-
-// The order of rows: baseline, models, refiners, methods as they return, then
-// controls, then the bounds that no method passes.
-int RowRank(const LoadedRun& run) {
-  const RunDescription& d = run.description;
-  if (d.method == "coarse") return 0;
-  if (d.asks_model) return 1;
-  if (d.method == "advisor") return d.backend == "search" ? 5 : 2;
-  if (d.method == "oracle") return 6;
-  return d.title.rfind("control", 0) == 0 ? 4 : 3;
-}
-
-// Which run stands in which table.
-struct Selection {
-  std::vector<LoadedRun> comparison;
-  std::vector<LoadedRun> gap;
-  std::vector<LoadedRun> joints;
-  std::vector<LoadedRun> rugd;
-  std::vector<LoadedRun> latency;
-  std::vector<LoadedRun> models;  ///< Ablation and noise.
-  /// Sets of comparable runs that stand in no table above.
-  std::vector<std::vector<LoadedRun>> others;
-};
-
-// Parts the runs that no other table has into sets of comparable ones.
-std::vector<std::vector<LoadedRun>> SelectOthers(
-    const std::vector<LoadedRun>& runs, const Selection& s) {
-  std::set<std::string> shown;
-  for (const auto* table :
-       {&s.comparison, &s.gap, &s.joints, &s.rugd, &s.latency}) {
-    for (const LoadedRun& run : *table) shown.insert(run.folder);
-  }
-  std::vector<std::vector<LoadedRun>> others;
-  for (const LoadedRun& run : runs) {
-    if (shown.contains(run.folder)) continue;
-    const auto set = std::find_if(
-        others.begin(), others.end(), [&](const std::vector<LoadedRun>& o) {
-          return WhyNotComparable(o.front(), run).empty();
-        });
-    if (set == others.end()) {
-      others.push_back({run});
-    } else {
-      set->push_back(run);
-    }
-  }
-  return others;
-}
-
-Selection SelectRuns(const std::vector<LoadedRun>& runs) {
-  Selection s;
-  const auto plain = Select(runs, IsPlain);
-  s.comparison = LargestComparable(Select(plain, [](const LoadedRun& run) {
-    return IsGenerated(run) && run.description.stride == kPaperStride &&
-           run.description.joints == "2r";
-  }));
-  s.rugd = LargestComparable(Select(plain, [](const LoadedRun& run) {
-    return IsRugd(run) && run.description.stride == kPaperStride;
-  }));
-  s.latency = Select(plain, [](const LoadedRun& run) {
-    return IsGenerated(run) && run.description.jobs == 1;
-  });
-  s.models = Select(runs, [](const LoadedRun& run) {
-    return IsGenerated(run) && run.description.asks_model;
-  });
-  if (s.comparison.empty()) {
-    s.others = SelectOthers(runs, s);
-    return s;
-  }
-  const LoadedRun& main = s.comparison.front();
-  s.gap = Select(plain, [&](const LoadedRun& run) {
-    return SameCases(run, main) && run.description.method == "advisor" &&
-           run.description.joints == "2r";
-  });
-  s.joints = Select(plain, [&](const LoadedRun& run) {
-    return SameCases(run, main) && run.description.stride == kPaperStride;
-  });
-  s.others = SelectOthers(runs, s);
-  return s;
-}
 
 // A file that the report is made of, below its folder.
 struct Output {
@@ -164,10 +39,12 @@ class ReportWriter {
     Comparison(s.comparison);
     Gaps(s);
     page_.Section("Ablation, noise, latency",
-                  "These rows need a model. They are measured by the commands "
-                  "shown, or reproduced from a recording.");
-    Add(AblationTable(s.models));
-    Add(NoiseTable(s.models));
+                  "Rows of a model are measured by the commands shown, or "
+                  "reproduced from a recording. Latency rows are of runs that "
+                  "took one case at a time, on the cases that all of them "
+                  "have.");
+    Add(AblationTable(s.ablation));
+    Add(NoiseTable(s.noise));
     Add(LatencyTable(s.latency));
     page_.Section("RUGD",
                   "Semantic masks of camera frames as cost rasters: how the "
@@ -242,7 +119,8 @@ class ReportWriter {
     if (others.empty()) return;
     page_.Section("Other runs",
                   "Runs that stand in no table above: other datasets, case "
-                  "lists, strides or switches. Recordings for tests are among "
+                  "lists, strides or switches. Recordings for "
+                  "tests are among "
                   "them; their README says what they are.");
     int number = 0;
     for (const std::vector<LoadedRun>& set : others) {
@@ -250,10 +128,9 @@ class ReportWriter {
         Table table = ProposalTable(set, group);
         table.id = "other-" + std::to_string(++number);
         const RunDescription& d = set.front().description;
-        table.title =
-            (d.dataset_name.empty() ? "Unnamed dataset" : d.dataset_name) +
-            (group.empty() ? "" : ", " + group) + ", stride " +
-            std::to_string(d.stride) + ", joints " + d.joints;
+        table.title = DatasetTitle(d) + (group.empty() ? "" : ", " + group) +
+                      ", stride " + std::to_string(d.stride) + ", joints " +
+                      d.joints;
         Add(table);
       }
     }
@@ -271,18 +148,25 @@ class ReportWriter {
       if (!digest.ok()) return digest.error();
       const LoadedRun* run = PictureRun(s, *digest);
       if (run == nullptr) continue;
-      const auto panels = MakePanels(run->folder, *dataset, kPanelsPerGroup);
+      const auto panels = MakePanels(run->folder, *dataset, kPanelsPerGroup,
+                                     FramesOf(*dataset, *run));
       if (!panels.ok()) return panels.error();
       AddPanels(*run, *panels);
     }
     return Done{};
   }
 
+  // Only frames of RUGD are meant.
+  std::string FramesOf(const Dataset& dataset, const LoadedRun& run) const {
+    if (!IsRugd(run)) return "";
+    return options_.frames.empty() ? RugdFramesOf(dataset) : options_.frames;
+  }
+
   // A model's run when there is one, else a refiner's that is no bound.
   static const LoadedRun* PictureRun(const Selection& s,
                                      const std::string& digest) {
     const LoadedRun* best = nullptr;
-    for (const auto* runs : {&s.models, &s.comparison, &s.rugd}) {
+    for (const auto* runs : {&s.ablation, &s.comparison, &s.rugd}) {
       for (const LoadedRun& run : *runs) {
         if (run.description.dataset_digest != digest ||
             run.description.method != "advisor") {
@@ -342,10 +226,7 @@ Status WriteReport(const ReportOptions& options) {
       return run.description.simulated;
     });
   }
-  std::stable_sort(runs->begin(), runs->end(),
-                   [](const LoadedRun& a, const LoadedRun& b) {
-                     return RowRank(a) < RowRank(b);
-                   });
+  SortRows(*runs);
   return ReportWriter(options).Write(*runs);
 }
 

@@ -12,6 +12,9 @@ struct ReportOptions {
   std::vector<std::string> runs;  ///< Run folders, or folders above them.
   /// Dataset folders, for pictures; those whose digest a run has are used.
   std::vector<std::string> datasets;
+  /// Camera frames of RUGD, for pictures of frame above mask; empty = where
+  /// the dataset says.
+  std::string frames;
   std::string out;
   bool include_simulated = false;
 };

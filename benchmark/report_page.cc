@@ -3,6 +3,7 @@
 #include <set>
 #include <string_view>
 
+#include "benchmark/run_labels.h"
 #include "benchmark/table.h"
 
 namespace terra::benchmark {
@@ -17,7 +18,7 @@ constexpr std::string_view kStyle = R"(
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);
 font:15px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
-main,header,nav{max-width:1240px;margin:0 auto;padding:0 24px}
+main,header,nav,footer{max-width:1480px;margin:0 auto;padding:0 24px}
 header{padding-top:40px}
 h1{font-size:30px;line-height:1.2;margin:0 0 8px}
 h2{font-size:21px;margin:48px 0 6px;padding-top:12px;border-top:1px solid var(--line)}
@@ -35,23 +36,30 @@ figure.plot figcaption{font-weight:400;color:var(--soft);font-size:13px}
 figure.plot svg{width:100%;max-width:820px;height:auto}
 .scroll{overflow-x:auto;border:1px solid var(--line);border-radius:8px}
 table{border-collapse:collapse;width:100%;font-size:13px;font-variant-numeric:tabular-nums}
-th,td{padding:6px 8px;text-align:right;border-bottom:1px solid var(--line);vertical-align:top}
-tr>*:first-child{text-align:left;font-weight:500;min-width:190px;max-width:330px}
-thead th{background:var(--band);font-weight:600;white-space:nowrap;position:sticky;top:0}
+th,td{padding:5px 7px;text-align:right;border-bottom:1px solid var(--line);vertical-align:top}
+.words{text-align:left}
+tr>*:first-child{min-width:170px;max-width:330px}
+tbody th{font-weight:500}
+thead th{background:var(--band);font-weight:600;vertical-align:bottom;overflow-wrap:normal}
 tbody:last-child tr:last-child>*{border-bottom:0}
-tr.heading th{background:var(--band);color:var(--soft);font-weight:600;font-size:12px;max-width:none}
+tr.heading th{text-align:left;background:var(--band);color:var(--soft);font-weight:600;font-size:12px;max-width:none}
 tr.published>*{color:var(--soft);font-style:italic}
-td.words{text-align:left;color:var(--soft);font-family:ui-monospace,monospace;font-size:12px}
+td.command{text-align:left;color:var(--soft);font-family:ui-monospace,monospace;font-size:12px}
 .interval{display:block;color:var(--soft);font-size:11px;white-space:nowrap}
 .note{font-size:12.5px;margin:6px 0 0}
-#runs td,#runs th{text-align:left;font-size:12px}
-#runs td:last-child{font-family:ui-monospace,monospace;min-width:340px;overflow-wrap:anywhere}
+#runs td,#runs th{font-size:12px}
+#runs td:nth-child(2),#runs td:nth-child(8){overflow-wrap:anywhere;min-width:110px}
+#runs td:last-child{font-family:ui-monospace,monospace;min-width:320px;overflow-wrap:anywhere}
 .panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:18px}
 .panels figure{margin:0}
 .panels img{width:100%;height:auto;border:1px solid var(--line);border-radius:6px;display:block}
 .panels figcaption{font-weight:400;font-size:12.5px;color:var(--soft);margin-top:6px}
-footer{max-width:1180px;margin:48px auto 32px;padding:0 24px;color:var(--soft);font-size:13px}
-@media print{nav{display:none}h2{break-before:auto}figure{break-inside:avoid}}
+footer{margin-top:48px;padding-bottom:32px;color:var(--soft);font-size:13px}
+@page{size:A3 landscape;margin:12mm}
+@media print{nav{display:none}main,header,footer{max-width:none;padding:0}
+.scroll{overflow:visible}tr,figure.plot,.panels figure{break-inside:avoid}
+h2,h3,figcaption{break-after:avoid}.panels{display:block}
+.panels figure{display:inline-block;width:31%;margin:0 1% 12px 0}}
 )";
 
 std::string Fact(const std::string& value, const std::string& label) {
@@ -67,8 +75,7 @@ void ReportPage::Intro(const std::vector<LoadedRun>& runs) {
   std::size_t rows = 0;
   bool models = false;
   for (const LoadedRun& run : runs) {
-    datasets.insert(run.description.dataset_name + " " +
-                    run.description.dataset_version);
+    datasets.insert(DatasetTitle(run.description));
     builds.insert(run.description.build_id);
     rows += run.scores.size();
     models = models || run.description.asks_model;

@@ -165,6 +165,9 @@ std::string DatasetJson(const RugdOptions& options, const Tables& tables) {
   for (const auto& [group, count] : tables.counts) {
     json["groups"][group] = {{"frames", count.frames}, {"used", count.used}};
   }
+  if (!options.frames.empty()) {
+    json["frames"] = fs::absolute(options.frames).string();
+  }
   json["digest"] = advisor::Sha256Hex(tables.digest_lines);
   return json.dump(2) + "\n";
 }
@@ -200,6 +203,13 @@ Status PrepareFolder(const fs::path& out) {
 
 }  // namespace
 
+std::string RugdFramesOf(const Dataset& dataset) {
+  const auto json = nlohmann::json::parse(dataset.json, nullptr, false);
+  const auto found = json.is_object() ? json.find("frames") : json.end();
+  return found != json.end() && found->is_string() ? found->get<std::string>()
+                                                   : "";
+}
+
 Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder) {
   std::map<std::string, RugdFrame> frames;
   std::error_code failed;
@@ -217,7 +227,7 @@ Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder) {
   }
   if (failed || frames.empty()) {
     return Error{ErrorCode::kNotFound,
-                 folder + ": no RUGD masks (SCENE_NNNNN.png) below it"};
+                 folder + ": no RUGD images (SCENE_NNNNN.png) below it"};
   }
   std::vector<RugdFrame> sorted;
   for (auto& [name, frame] : frames) sorted.push_back(std::move(frame));

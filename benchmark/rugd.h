@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "terrain/cell.h"
+#include "terrain/files/dataset.h"
 #include "terrain/map.h"
 #include "terrain/result.h"
 
@@ -16,6 +17,9 @@ struct RugdOptions {
   /// The official archive (SCENE/SCENE_NNNNN.png) or a flat folder of masks.
   std::string annotations;
   std::string out;
+  /// The camera frames, named as their masks; only noted in dataset.json, for
+  /// the report's pictures. Empty = none.
+  std::string frames;
   std::uint64_t seed = 0;
   int jobs = 0;  ///< 0 = all cores.
 };
@@ -33,6 +37,9 @@ struct RugdFrame {
   std::string sequence;  ///< Up to the last underscore.
   std::string group;     ///< Up to the first `-` or `_`.
 };
+
+/// Where a converted dataset says that its camera frames are; empty = nowhere.
+std::string RugdFramesOf(const Dataset& dataset);
 
 /// Returns the masks below a folder in order of their names; none for other
 /// files. A name that stands twice is an error.

@@ -10,14 +10,12 @@
 #include <utility>
 
 #include "advisor/encoding.h"
+#include "benchmark/case_work.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
 #include "benchmark/results_file.h"
 #include "benchmark/run_description.h"
-#include "benchmark/stopwatch.h"
-#include "terrain/digest.h"
 #include "terrain/files/whole_file.h"
-#include "terrain/native_search.h"
 
 namespace terra::benchmark {
 namespace {
@@ -25,8 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 30;
-// Where costs are no exact units the same route may sum up to a hair more.
-constexpr double kBoundSlack = 1 + 1e-9;
 
 // A method's open results.
 struct OpenRun {
@@ -58,6 +54,9 @@ Result<RunDescription> BeginDescription(const MethodRun& run,
     description.started = before->started;
     description.started.push_back(UtcNow());
     description.models = before->models;
+    description.recorded = before->recorded;
+    // A part that ran with several jobs did not take one case at a time.
+    description.jobs = std::max(description.jobs, before->jobs);
   }
   const Status written = WriteRunDescription(description, path);
   if (!written.ok()) return written.error();
@@ -73,9 +72,11 @@ Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
   }
   OpenRun open;
   open.run = &run;
-  auto results =
-      ResultsFile::Open((fs::path(run.folder) / "results.csv").string(),
-                        options.cases, options.repeats);
+  auto results = ResultsFile::Open(
+      (fs::path(run.folder) / "results.csv").string(), options.cases,
+      options.repeats,
+      run.choice.info.several_candidates ? ResultColumns::kWithCandidates
+                                         : ResultColumns::kUsual);
   if (!results.ok()) return results.error();
   open.results = *std::move(results);
   Result<RunDescription> begun = BeginDescription(run, std::move(description));
@@ -84,71 +85,6 @@ Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
   open.models.insert(open.description.models.begin(),
                      open.description.models.end());
   return open;
-}
-
-// What all methods share of a case.
-struct CaseWork {
-  const DatasetCase& dataset_case;
-  TerrainMap map;
-  std::int64_t map_id = 0;
-  double t_map = 0;
-  planner::LatticePlan baseline;
-  double t_baseline = 0;
-  double oracle_cost = kImpassable;
-};
-
-Result<CaseWork> BeginCase(const Dataset& dataset, const DatasetCase& c,
-                           const RunOptions& options) {
-  const Stopwatch map_watch;
-  Result<TerrainMap> map = ReadCaseMap(dataset, c, options.cost_model);
-  if (!map.ok()) return map.error();
-  const double t_map = map_watch.Seconds();
-  const Stopwatch plan_watch;
-  planner::LatticePlan baseline =
-      planner::PlanOnLattice(*map, c.start, c.goal, options.lattice);
-  const double t_baseline = plan_watch.Seconds();
-  NativeSearchOptions search;
-  search.upper_bound = baseline.cost * kBoundSlack;
-  const double oracle = NativeSearch(*map, c.start, c.goal, search).cost;
-  const std::int64_t map_id = MapId(*map);
-  return CaseWork{c,     *std::move(map),     map_id,
-                  t_map, std::move(baseline), t_baseline,
-                  oracle};
-}
-
-// The row of a case that has no baseline.
-CaseResult WithoutBaseline(const CaseWork& work, int repeat) {
-  CaseResult result;
-  result.case_id = work.dataset_case.case_id;
-  result.group = work.dataset_case.group;
-  const auto sequence = work.dataset_case.extra.find("sequence");
-  if (sequence != work.dataset_case.extra.end()) {
-    result.sequence = sequence->second;
-  }
-  result.map_id = work.map_id;
-  result.repeat = repeat;
-  result.kind = AttemptKind::kNoBaseline;
-  result.oracle_cost = work.oracle_cost;
-  return result;
-}
-
-struct Tried {
-  CaseResult result;
-  std::string model;
-};
-
-Tried TryCase(const CaseWork& work, const MethodInfo& info, Method& method,
-              int repeat) {
-  if (!work.baseline.found()) return {WithoutBaseline(work, repeat), ""};
-  const MethodInput input{work.dataset_case, work.map, work.map_id,
-                          work.baseline, repeat};
-  Attempt attempt = method.Try(input);
-  const Stopwatch watch;
-  CaseResult result = ScoreAttempt(input, info, work.oracle_cost, attempt);
-  result.t_det += watch.Seconds();
-  result.t_prep += work.t_map;
-  if (info.uses_baseline) result.t_det += work.t_baseline;
-  return {std::move(result), std::move(attempt.model)};
 }
 
 // Runs what is left of the cases, several at a time.
@@ -211,7 +147,7 @@ class Runner {
 
   void RunCase(std::size_t index) {
     const DatasetCase& c = dataset_.cases[place_of_.at(options_.cases[index])];
-    Result<CaseWork> work = BeginCase(dataset_, c, options_);
+    const Result<CaseWork> work = BeginCase(dataset_, c, options_);
     if (!work.ok()) return Fail(work.error());
     Result<Methods> methods = TakeMethods();
     if (!methods.ok()) return Fail(methods.error());
@@ -226,12 +162,24 @@ class Runner {
     idle_.push_back(*std::move(methods));
   }
 
-  void Keep(OpenRun& run, const Tried& tried) {
+  void Keep(OpenRun& run, const TriedCase& tried) {
     const Status written = run.results->Append(tried.result);
     if (!written.ok()) return Fail(written.error());
-    if (tried.model.empty()) return;
+    const Status described = Describe(run, tried);
+    if (!described.ok()) Fail(described.error());
+  }
+
+  // Into run.json at once, so that a run that is killed keeps it.
+  Status Describe(OpenRun& run, const TriedCase& tried) {
     const std::scoped_lock lock(mutex_);
-    run.models.insert(tried.model);
+    RunDescription& d = run.description;
+    const std::string days = d.recorded.Days();
+    d.recorded.Add(tried.recorded_at);
+    const bool named =
+        !tried.model.empty() && run.models.insert(tried.model).second;
+    if (!named && d.recorded.Days() == days) return Done{};
+    d.models = {run.models.begin(), run.models.end()};
+    return WriteRunDescription(d, DescriptionPath(*run.run));
   }
 
   Result<Methods> TakeMethods() {
@@ -275,7 +223,6 @@ Status Finish(OpenRun& open) {
   const Status sorted = open.results->Finish();
   if (!sorted.ok()) return sorted.error();
   open.description.finished = UtcNow();
-  open.description.models = {open.models.begin(), open.models.end()};
   return WriteRunDescription(open.description, DescriptionPath(*open.run));
 }
 

@@ -102,9 +102,30 @@ void ReadOrigin(const ordered_json& j, RunDescription& d) {
   j.at("started").get_to(d.started);
   j.at("finished").get_to(d.finished);
   j.at("models").get_to(d.models);
+  if (!j.contains("recorded")) return;  // Of runs that replay.
+  j.at("recorded").at("first").get_to(d.recorded.first);
+  j.at("recorded").at("last").get_to(d.recorded.last);
 }
 
 }  // namespace
+
+void RecordedTimes::Add(const std::string& utc) {
+  if (utc.empty()) return;
+  if (first.empty() || utc < first) first = utc;
+  if (utc > last) last = utc;
+}
+
+void RecordedTimes::Add(const RecordedTimes& other) {
+  Add(other.first);
+  Add(other.last);
+}
+
+std::string RecordedTimes::Days() const {
+  constexpr std::size_t kDayLength = 10;  // Of "2026-01-31T12:00:00Z".
+  const std::string from = first.substr(0, kDayLength);
+  const std::string to = last.substr(0, kDayLength);
+  return from == to ? from : from + " to " + to;
+}
 
 bool RunDescription::SameFigures(const RunDescription& other) const {
   return ConfigurationJson(*this) == ConfigurationJson(other);
@@ -164,7 +185,7 @@ RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
 
 Status WriteRunDescription(const RunDescription& d, const std::string& path) {
   const bool dirty = d.build_id.find("-dirty") != std::string::npos;
-  const ordered_json document = {
+  ordered_json document = {
       {"schema", RunDescription::kSchema},
       {"configuration", ConfigurationJson(d)},
       {"shard", {{"index", d.shard.index}, {"count", d.shard.count}}},
@@ -175,6 +196,10 @@ Status WriteRunDescription(const RunDescription& d, const std::string& path) {
       {"started", d.started},
       {"finished", d.finished},
       {"models", d.models}};
+  if (!d.recorded.first.empty()) {
+    document["recorded"] = {{"first", d.recorded.first},
+                            {"last", d.recorded.last}};
+  }
   return WriteWholeFile(path, document.dump(2) + "\n");
 }
 

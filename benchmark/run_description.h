@@ -10,6 +10,18 @@
 
 namespace terra::benchmark {
 
+/// When replayed calls were made: UTC times of the first and the last; empty
+/// where there are none.
+struct RecordedTimes {
+  std::string first;
+  std::string last;
+
+  void Add(const std::string& utc);
+  void Add(const RecordedTimes& other);
+  /// "2026-01-31" or "2026-01-31 to 2026-02-02".
+  std::string Days() const;
+};
+
 /// What run.json says of a run, as tables and reports need it.
 struct RunDescription {
   static constexpr int kSchema = 1;
@@ -36,13 +48,14 @@ struct RunDescription {
 
   // How this part of it came about.
   Shard shard;
-  int jobs = 1;
+  int jobs = 1;  ///< The most of all starts and shards, side by side.
   std::string build_id;
   std::string command_line;
   std::string machine;
   std::vector<std::string> started;  ///< UTC; one per start.
   std::string finished;              ///< UTC; empty while it runs.
   std::vector<std::string> models;   ///< As the replies named them.
+  RecordedTimes recorded;            ///< Replay only.
 
   /// Throws away how it came about, for comparing.
   bool SameFigures(const RunDescription& other) const;

@@ -60,6 +60,30 @@ void AppendCsvCell(const TableColumn& column, const TableCell& cell,
   fields.push_back(cell.high);
 }
 
+bool IsWords(const Table& table, std::size_t column) {
+  return column == 0 || table.columns[column].words;
+}
+
+// The letters of LaTeX's tabular.
+std::string ColumnLetters(const Table& table) {
+  std::string letters;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    letters += IsWords(table, i) ? 'l' : 'r';
+  }
+  return letters;
+}
+
+// Beside a minus sign a dash cannot be told from one.
+std::string HtmlInterval(const TableCell& cell) {
+  const bool negative = cell.low.front() == '-' || cell.high.front() == '-';
+  return EscapeHtml(cell.low) + (negative ? " to " : " – ") +
+         EscapeHtml(cell.high);
+}
+
+std::string HtmlClass(const Table& table, std::size_t column) {
+  return IsWords(table, column) ? " class=\"words\"" : "";
+}
+
 }  // namespace
 
 TableCell CountCell(std::int64_t n) {
@@ -68,6 +92,10 @@ TableCell CountCell(std::int64_t n) {
 
 TableCell NumberCell(std::optional<double> value, int digits) {
   return value ? Fixed(*value, digits) : "-";
+}
+
+TableCell SecondsCell(std::optional<double> value) {
+  return NumberCell(value, value && *value < 0.01 ? 6 : 4);
 }
 
 TableCell PercentCell(const std::optional<Estimate>& estimate) {
@@ -108,9 +136,9 @@ std::string ToCsv(const Table& table) {
 std::string ToMarkdown(const Table& table) {
   std::string text = "**" + EscapeMarkdown(table.title) + "**\n\n|";
   std::string rule = "|";
-  for (const TableColumn& column : table.columns) {
-    text += " " + EscapeMarkdown(column.name) + " |";
-    rule += rule.size() == 1 ? "---|" : "--:|";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    text += " " + EscapeMarkdown(table.columns[i].name) + " |";
+    rule += IsWords(table, i) ? "---|" : "--:|";
   }
   text += "\n" + rule + "\n";
   for (const TableBlock& block : table.blocks) {
@@ -141,9 +169,8 @@ std::string ToLatex(const Table& table) {
   const std::string width = std::to_string(table.columns.size());
   std::string text = "\\begin{table*}\n\\centering\n\\caption{" +
                      EscapeLatex(table.title) + "}\n\\label{tab:" + table.id +
-                     "}\n\\resizebox{\\textwidth}{!}{\n\\begin{tabular}{l" +
-                     std::string(table.columns.size() - 1, 'r') +
-                     "}\n\\toprule\n";
+                     "}\n\\resizebox{\\textwidth}{!}{\n\\begin{tabular}{" +
+                     ColumnLetters(table) + "}\n\\toprule\n";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     text += (i == 0 ? "" : " & ") + EscapeLatex(table.columns[i].name);
   }
@@ -184,13 +211,12 @@ std::string HtmlRow(const Table& table, const TableBlock& block,
     const bool spans = i + 1 == row.size() && span > 1;
     const std::string tag = i == 0 ? "th" : "td";
     text += "<" + tag;
-    if (spans) {
-      text += " class=\"words\" colspan=\"" + std::to_string(span) + "\"";
-    }
+    text += spans
+                ? " class=\"command\" colspan=\"" + std::to_string(span) + "\""
+                : HtmlClass(table, i);
     text += ">" + EscapeHtml(row[i].text);
     if (!row[i].low.empty()) {
-      text += "<span class=\"interval\">" + EscapeHtml(row[i].low) + " – " +
-              EscapeHtml(row[i].high) + "</span>";
+      text += "<span class=\"interval\">" + HtmlInterval(row[i]) + "</span>";
     }
     text += "</" + tag + ">";
   }
@@ -204,8 +230,9 @@ std::string ToHtml(const Table& table) {
       "<figure class=\"table\" id=\"" + table.id + "\">\n<figcaption>" +
       EscapeHtml(table.title) +
       "</figcaption>\n<div class=\"scroll\"><table>\n<thead><tr>";
-  for (const TableColumn& column : table.columns) {
-    text += "<th>" + EscapeHtml(column.name) + "</th>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    text += "<th" + HtmlClass(table, i) + ">" +
+            EscapeHtml(table.columns[i].name) + "</th>";
   }
   text += "</tr></thead>\n";
   for (const TableBlock& block : table.blocks) {

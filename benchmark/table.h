@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmark/statistics.h"
@@ -23,6 +24,7 @@ struct TableCell {
 struct TableColumn {
   std::string name;
   bool interval = false;  ///< Its cells have 95 % intervals.
+  bool words = false;     ///< Its cells are words, set to the left.
 };
 
 /// Rows that belong together under a heading.
@@ -31,6 +33,11 @@ struct TableBlock {
   bool published = false;  ///< Printed elsewhere: never ranked or subtracted.
   std::vector<std::vector<TableCell>> rows;
 };
+
+/// A column of words; the first one always is.
+inline TableColumn WordColumn(std::string name) {
+  return {std::move(name), false, true};
+}
 
 /// A table as data; the first column names the row. A row with fewer cells than
 /// columns says something in words: its last cell spans the rest.
@@ -55,6 +62,8 @@ std::string EscapeHtml(const std::string& text);
 /// Figures as cells; "-" where there is none.
 TableCell CountCell(std::int64_t n);
 TableCell NumberCell(std::optional<double> value, int digits);
+/// Seconds to four decimals, below 10 ms to six.
+TableCell SecondsCell(std::optional<double> value);
 TableCell PercentCell(const std::optional<Estimate>& estimate);
 
 }  // namespace terra::benchmark

@@ -11,6 +11,7 @@
 #include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sys/eventfd.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 
 #include "bus/lcm_url.h"
@@ -64,12 +65,31 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
                "cannot use the bus " + text + ": " + why};
 }
 
+// liblcm 1.3.1 waits with select(), which ends the process when a descriptor
+// is FD_SETSIZE or more: refused here, with a word.
+Status RoomForLcm() {
+  constexpr int kDescriptorsOfLcm = 24;
+  const int next = eventfd(0, EFD_CLOEXEC);
+  if (next >= 0) close(next);
+  if (next >= 0 && next + kDescriptorsOfLcm < FD_SETSIZE) return Done{};
+  return Error{
+      ErrorCode::kUnavailable,
+      next < 0
+          ? std::string("no file descriptor left: ") + std::strerror(errno)
+          : "about " + std::to_string(next) +
+                " file descriptors are open already and LCM cannot use those "
+                "from " +
+                std::to_string(FD_SETSIZE) +
+                " on: close what the parent process leaves open"};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Bus>> Bus::Open(const std::string& url,
                                        ChannelNames names) {
   const Result<LcmUrl> parsed = ParseLcmUrl(url);
   if (!parsed) return parsed.error();
+  if (const Status room = RoomForLcm(); !room) return room.error();
   lcm_t* lcm = lcm_create(url.c_str());
   if (lcm == nullptr) return WhyUnusable(url, "LCM refuses it");
   return std::unique_ptr<Bus>(new Bus(url, std::move(names), lcm));

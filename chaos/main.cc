@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bus/advice_receiver.h"
+#include "bus/number_range.h"
 #include "bus/process.h"
 #include "chaos/chaos_node.h"
 #include "chaos/datagram_socket.h"
@@ -63,11 +64,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_flag("--many-senders", arguments.many_senders,
                "each datagram from another port, past limits per sender");
   app.add_option("--rate", arguments.chaos.rate, "misdeeds a second")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(terra::bus::InRange(0.001, 1e6));
   app.add_option("--seed", arguments.seed, "the same seed, the same misdeeds");
   app.add_option("--for", arguments.chaos.duration_s,
                  "ends after so many seconds (0 = when asked to)")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(terra::bus::InRange(0.0, 1e6));
   app.add_option("--count", arguments.chaos.count,
                  "ends after so many misdeeds (0 = never)")
       ->check(CLI::NonNegativeNumber);

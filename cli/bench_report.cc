@@ -22,6 +22,12 @@ void AddBenchReport(CLI::App& bench, int& exit_code) {
       .add_option("--dataset", options->datasets,
                   "Dataset folders, for the pictures")
       ->type_name("DIR ...");
+  command
+      .add_option("--frames", options->frames,
+                  "Camera frames of RUGD, to be shown above their masks "
+                  "(default: those that `bench rugd --frames` was given)")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
   command.add_flag("--include-simulated", options->include_simulated,
                    "Let runs against a simulated model into the tables, "
                    "marked SIMULATED");

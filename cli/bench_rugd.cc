@@ -41,6 +41,12 @@ void AddBenchRugd(CLI::App& bench, int& exit_code) {
       ->required()
       ->type_name("DIR");
   command
+      .add_option("--frames", options->frames,
+                  "RUGD_frames-with-annotations of the archive: the report "
+                  "then shows the frame above its mask")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  command
       .add_option("--seed", options->seed,
                   "Of the choice of start and goal (default 0)")
       ->type_name("S");

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "benchmark/detail_tables.h"
 #include "benchmark/paper_tables.h"
 #include "cli/bench_commands.h"
 #include "cli/output.h"

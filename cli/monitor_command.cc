@@ -9,6 +9,7 @@
 
 #include "bus/bus.h"
 #include "bus/event_loop.h"
+#include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
 #include "cli/monitor_node.h"
@@ -66,7 +67,7 @@ void AddMonitorCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option("--for", arguments->duration_s,
                    "ends after so many seconds (default: with Ctrl-C)")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(bus::InRange(0.0, 1e6))
       ->type_name("S");
   command->footer("example: terra monitor --robot ALPHA");
   command->callback([arguments, &exit_code] {

@@ -12,6 +12,7 @@
 #include "bus/codec.h"
 #include "bus/envelope.h"
 #include "bus/event_loop.h"
+#include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
@@ -276,7 +277,7 @@ void AddRequestCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option("--wait", arguments->wait_s,
                    "seconds to wait for a refined route (default 10)")
-      ->check(CLI::Range(0.0, 86'400.0));
+      ->check(bus::InRange(0.0, 86'400.0));
   command->add_flag("--keep", arguments->keep,
                     "go on asking until stopped (Ctrl-C)");
   command->add_option("--picture", arguments->picture,

@@ -8,6 +8,7 @@
 
 #include "bus/advice_receiver.h"
 #include "bus/lcm_url.h"
+#include "bus/number_range.h"
 #include "bus/process.h"
 #include "verifier/verifier_node.h"
 
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
   spec.add_options = [&](CLI::App& app) {
     app.add_option("--margin", gate.margin,
                    "a candidate must save more than this, in cost")
-        ->check(CLI::Range(0.0, 1e9));
+        ->check(terra::bus::InRange(0.0, 1e9));
     app.add_option("--replay-session", gate.session,
                    "take anchors and poses of this session of a gate for one's "
                    "own, to hear the log of that one; never on a robot");

@@ -8,6 +8,7 @@
 #include "benchmark/loaded_run.h"
 #include "benchmark/paper_tables.h"
 #include "benchmark/run.h"
+#include "benchmark/run_labels.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
 
@@ -82,7 +83,8 @@ TEST_F(Replay, ASecondReplayGivesTheSameRows) {
 TEST_F(Replay, TheRowNamesTheModelThatTheReplyNamed) {
   const LoadedRun run = Run("raw", false);
   EXPECT_EQ(RowTitle(run),
-            "LLM-Advisor: unnamed-llm-native (asked for unnamed-llm-native)");
+            "LLM-Advisor: unnamed-llm-native (asked for unnamed-llm-native; "
+            "recorded 2026-11-26)");
   EXPECT_TRUE(IsPlain(run));
   EXPECT_EQ(SettingOf(run, "noise", ""), "0");
   // It stands for no provider's row.

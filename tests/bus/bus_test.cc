@@ -1,13 +1,17 @@
 #include "bus/bus.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 
 #include "bus/envelope.h"
@@ -205,6 +209,29 @@ TEST(NodeTest, CountsWhatDoesNotDecode) {
   node.AddCounters(counters);
   EXPECT_EQ(counters, (Counters{{"received", 2}, {"malformed", 1}}));
   EXPECT_TRUE(node.got_pose);
+}
+
+// Beyond FD_SETSIZE liblcm would end the process.
+TEST(BusOpenTest, IsRefusedWhenLcmWouldGetDescriptorsItCannotUse) {
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  rlimit enough = before;
+  enough.rlim_cur = std::max<rlim_t>(before.rlim_cur, FD_SETSIZE + 100);
+  if (setrlimit(RLIMIT_NOFILE, &enough) != 0) {
+    GTEST_SKIP() << "this user may not open " << FD_SETSIZE << " files";
+  }
+  std::vector<int> opened = {open("/dev/null", O_RDONLY)};
+  while (opened.back() < FD_SETSIZE) {
+    opened.push_back(open("/dev/null", O_RDONLY));
+    ASSERT_GE(opened.back(), 0);
+  }
+  const auto bus = Bus::Open("memq://", ChannelNames());
+  for (const int fd : opened) close(fd);
+  setrlimit(RLIMIT_NOFILE, &before);
+  ASSERT_FALSE(bus.ok());
+  EXPECT_NE(bus.error().message.find("file descriptors are open"),
+            std::string::npos);
+  EXPECT_TRUE(Bus::Open("memq://", ChannelNames()).ok());
 }
 
 }  // namespace

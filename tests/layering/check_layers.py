@@ -34,7 +34,7 @@ ALLOWED = {
 }
 # Process code: files that talk to the bus. Pure files of a folder never
 # include these, so the cores stay testable without a bus.
-NODE_FILE = re.compile(r"(_node|_?main|_process|_codec)\.(h|cc)$")
+NODE_FILE = re.compile(r"(_node|_?main|_process|_codec|_options)\.(h|cc)$")
 NODE_MAY_ADD = {"bus", "terra_msg", "terrain/files"}
 NODE_NEVER = {"verifier": {"terrain/files"}}
 # Readers of a folder's own files: no process code, but they read files. What

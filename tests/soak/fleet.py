@@ -44,8 +44,12 @@ class Process:
     def exit_code(self):
         return self._child.poll()
 
+    def output(self):
+        """Of all lives."""
+        return self._output.read_bytes().decode(errors="replace")
+
     def last_words(self):
-        return self._output.read_bytes()[-400:].decode(errors="replace")
+        return self.output()[-400:]
 
     def kill(self):
         self._child.kill()

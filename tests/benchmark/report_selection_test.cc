@@ -1,0 +1,163 @@
+#include "benchmark/report_selection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "benchmark/detail_tables.h"
+#include "benchmark/paper_tables.h"
+#include "benchmark/run_labels.h"
+
+namespace terra::benchmark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+// A refiner's run on the first n cases of both subsets.
+LoadedRun Refiner(const std::string& folder, const std::string& backend, int n,
+                  int jobs = 2) {
+  LoadedRun run;
+  run.folder = folder;
+  RunDescription& d = run.description;
+  d.method = "advisor";
+  d.backend = d.title = backend;
+  d.dataset_digest = "maps";
+  d.case_list_digest = "first " + std::to_string(n);
+  d.num_cases = 2 * n;
+  d.stride = 50;
+  d.joints = "2r";
+  d.settings_json = "{}";
+  d.jobs = jobs;
+  for (const std::string group : {"easy", "hard"}) {
+    for (int i = 0; i < n; ++i) {
+      Score score;
+      score.case_id = group + std::to_string(i);
+      score.group = group;
+      score.kind = AttemptKind::kPropose;
+      score.baseline_cost = 100;
+      score.oracle_cost = score.final_cost = 90;
+      run.scores.push_back(score);
+    }
+  }
+  return run;
+}
+
+LoadedRun Model(const std::string& folder, int n, const std::string& settings) {
+  LoadedRun run = Refiner(folder, "openai", n, 1);
+  run.description.asks_model = true;
+  run.description.settings_json = settings;
+  return run;
+}
+
+std::vector<std::string> Folders(const std::vector<LoadedRun>& runs) {
+  std::vector<std::string> folders;
+  for (const LoadedRun& run : runs) folders.push_back(run.folder);
+  return folders;
+}
+
+TEST(SelectRuns, ARunMadeTwiceStandsOnceWithTheTimesOfOneCaseAtATime) {
+  const Selection s = SelectRuns(
+      {Refiner("a", "shortcut", 5, 2), Refiner("b", "band", 5, 2),
+       Refiner("c", "shortcut", 5, 1), Refiner("d", "shortcut", 5, 1)});
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("c", "b"));
+  EXPECT_THAT(Folders(s.gap), ElementsAre("c", "b"));
+  EXPECT_THAT(Folders(s.latency), ElementsAre("c"));
+  EXPECT_THAT(s.others, IsEmpty());
+}
+
+TEST(SelectRuns, LatencyRowsTookOneCaseAtATimeOnTheSameCases) {
+  LoadedRun elsewhere = Refiner("elsewhere", "search", 3, 1);
+  elsewhere.description.dataset_digest = "other maps";
+  LoadedRun coarser = Refiner("coarser", "search", 4, 1);
+  coarser.description.stride = 100;
+  const Selection s = SelectRuns({Refiner("many jobs", "search", 9, 2),
+                                  Refiner("few", "search", 4, 1),
+                                  Model("model", 9, "{}"), elsewhere, coarser});
+  EXPECT_THAT(Folders(s.latency), UnorderedElementsAre("few", "model"));
+  for (const LoadedRun& run : s.latency) EXPECT_EQ(run.scores.size(), 8U);
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("many jobs", "model"));
+  EXPECT_EQ(s.comparison.front().scores.size(), 18U);
+  ASSERT_EQ(s.others.size(), 2U);
+  EXPECT_THAT(Folders(s.others[0]), ElementsAre("elsewhere"));
+  EXPECT_THAT(Folders(s.others[1]), ElementsAre("coarser"));
+}
+
+TEST(SelectRuns, AblationAndNoiseDoNotMixDatasets) {
+  LoadedRun elsewhere = Model("elsewhere", 3, "{}");
+  elsewhere.description.dataset_digest = "other maps";
+  const Selection s = SelectRuns({elsewhere, Model("full", 9, "{}"),
+                                  Model("bare", 9, R"({"rea":false})"),
+                                  Model("noisy", 4, R"({"noise":5})")});
+  EXPECT_THAT(Folders(s.ablation), UnorderedElementsAre("full", "bare"));
+  EXPECT_THAT(Folders(s.noise), UnorderedElementsAre("full", "noisy"));
+  for (const LoadedRun& run : s.noise) EXPECT_EQ(run.scores.size(), 8U);
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("full"));
+  ASSERT_EQ(s.others.size(), 1U);
+  EXPECT_THAT(Folders(s.others[0]), ElementsAre("elsewhere"));
+}
+
+TEST(SelectRuns, RunsOfAnotherCostModelStandApart) {
+  LoadedRun tight = Refiner("tight", "shortcut", 5);
+  tight.description.corner_cutting = false;
+  tight.description.stride = 10;
+  const Selection s = SelectRuns({Refiner("main", "shortcut", 5), tight});
+  EXPECT_THAT(Folders(s.gap), ElementsAre("main"));
+  EXPECT_THAT(Folders(s.others.at(0)), ElementsAre("tight"));
+}
+
+TEST(SelectRuns, OfNothingIsNothing) {
+  const Selection s = SelectRuns({});
+  EXPECT_THAT(s.comparison, IsEmpty());
+  EXPECT_THAT(s.latency, IsEmpty());
+  EXPECT_THAT(s.others, IsEmpty());
+}
+
+TEST(SortRows, PutsTheBoundsLast) {
+  LoadedRun oracle = Refiner("oracle", "", 1);
+  oracle.description.method = "oracle";
+  LoadedRun coarse = Refiner("coarse", "", 1);
+  coarse.description.method = "coarse";
+  std::vector<LoadedRun> runs = {oracle, Refiner("search", "search", 1),
+                                 Refiner("band", "band", 1),
+                                 Model("model", 1, "{}"), coarse};
+  SortRows(runs);
+  EXPECT_THAT(Folders(runs),
+              ElementsAre("coarse", "model", "band", "search", "oracle"));
+}
+
+TEST(LatencyTable, SaysHowManyCallsOfAModelACaseTakes) {
+  const std::string text = ToCsv(LatencyTable(
+      {Model("once", 1, "{}"), Model("rounds", 1, R"({"rounds":3})"),
+       Refiner("none", "search", 1, 1)}));
+  EXPECT_THAT(text, HasSubstr("easy,1,1,"));
+  EXPECT_THAT(text, HasSubstr("easy,1,1 to 3,"));
+  EXPECT_THAT(text, HasSubstr("search,easy,1,0,"));
+}
+
+TEST(ProposalTable, HasColumnsForCandidatesWhereAnAnswerMayHaveSeveral) {
+  LoadedRun several = Model("several", 1, R"({"candidates":4})");
+  several.scores[0].candidates = 4;
+  several.scores[0].candidates_lower = 1;
+  const LoadedRun one = Model("one", 1, "{}");
+  const std::string both = ToCsv(ProposalTable({one, several}, "easy"));
+  EXPECT_THAT(both, HasSubstr(",Candidates,ASR per candidate %,"));
+  EXPECT_THAT(both, HasSubstr(",-,-,,,-,,\n"));
+  EXPECT_THAT(both, HasSubstr(",4,25.00,4.56,69.94,0.00,0.00,48.99\n"));
+  EXPECT_THAT(ToCsv(ProposalTable({one}, "easy")),
+              ::testing::Not(HasSubstr("andidate")));
+}
+
+TEST(RowTitle, OfARecordingSaysWhenItWasMade) {
+  LoadedRun run = Model("replay", 1, R"({"model":"asked"})");
+  run.description.models = {"answered"};
+  run.description.recorded = {"2026-01-31T23:59:59Z", "2026-01-31T23:59:59Z"};
+  EXPECT_EQ(RowTitle(run),
+            "openai: answered (asked for asked; recorded 2026-01-31)");
+  run.description.recorded.Add(std::string("2026-02-02T00:00:00Z"));
+  EXPECT_THAT(RowTitle(run), HasSubstr("recorded 2026-01-31 to 2026-02-02)"));
+}
+
+}  // namespace
+}  // namespace terra::benchmark

@@ -1,0 +1,176 @@
+"""Advisors that are absent, dead, frozen, slow, lying, flooding."""
+import re
+import time
+
+from rig import require
+from rows import row
+
+LIES = {
+    "geometry": ["through-obstacles", "jumps", "duplicated-points", "huge-routes",
+                 "too-few-points", "wrong-start", "wrong-goal"],
+    "costs": ["dearer-routes", "ties", "cost-lies"],
+    "keys": ["wrong-request", "wrong-map", "wrong-baseline", "wrong-anchor", "late-advice"],
+    "who says it": ["stale-seq", "same-attempt", "replay", "impersonate", "clock-lies",
+                    "unknown-kind", "forged-deployed"],
+    "bytes": ["garbage", "truncated", "bit-flips", "hostile-counts", "hostile-strings",
+              "version-skew"],
+    "datagrams": ["no-channel-end", "oversize", "half-fragments", "offset-wrap", "slow-drip"],
+}
+
+
+@row("no advisor", "GATE 1", ["verifier:waits-for-advice"], short=True)
+def no_advisor(rig):
+    rig.set_up()
+    for _ in range(50):
+        rig.serve()
+        require(rig.deployed["mode"] == 1, "a candidate without an advisor")
+    rig.injected = 50
+    return "50 of 50 requests have their baseline"
+
+
+@row("advisor killed in mid-request (-9), restarted", "GATE 2; LCM flapping",
+     ["verifier:waits-for-advice", "nobody restarts"], short=True)
+def advisor_killed(rig):
+    rig.set_up("searcher")
+    for i in range(20):
+        rig.ask()
+        rig.hear(0.001 * (i % 5))
+        rig["searcher"].kill()
+        rig.injected += 1
+        rig.await_served()
+        rig.revive("searcher")
+        if i % 4 == 3:
+            rig.await_candidate()
+    rig.await_candidate(5)
+    return "all requests served; its route is in force again after the last restart"
+
+
+@row("advisor frozen (SIGSTOP), goes on when all is over", "GATE 3; LCM hung",
+     ["verifier:waits-for-advice", "verifier:no-key"])
+def advisor_frozen(rig):
+    rig.set_up("searcher")
+    for attempt in range(1, 7):
+        rig["searcher"].stop()
+        rig.serve()
+        old = rig.baseline
+        rig.serve()
+        # What it would have said of the request before, and has not yet.
+        rig.advise(old, rig.optimum(old_ends(old)), attempt)
+        rig["searcher"].resume()
+        require(rig.verdict_on(attempt) == 40, "late advice is not stale")
+        rig.await_candidate()
+    return "late advice is stale_request; the next proposal comes into force"
+
+
+def old_ends(baseline):
+    return ((baseline["start_x"], baseline["start_y"]), (baseline["goal_x"], baseline["goal_y"]))
+
+
+@row("slow answers (0 to 8 s)", "GATE 4",
+     ["verifier:waits-for-advice", "verifier:closes-early"])
+def slow_answers(rig):
+    rig.set_up()
+    for attempt, wait in enumerate((0, 0.5, 2, 8), start=1):
+        rig.serve()
+        rig.hear(wait)
+        require(rig.deployed["mode"] == 1, "no baseline in force while the answer is awaited")
+        rig.advise(rig.baseline, rig.optimum(rig.ends), attempt)
+        require(rig.verdict_on(attempt) == 1, f"an answer after {wait} s is not accepted")
+    rig.await_candidate()
+    return "the baseline is in force meanwhile; each answer to what is still in force is accepted"
+
+
+def attacked(rig, flags, seconds=3.0, rate=150.0, to="advice"):
+    """Serves requests while terra-chaos does its worst. Returns how many."""
+    options = [f"--{flag}" for flag in flags]
+    rig.define("chaos", "terra-chaos", *options, "--for", seconds, "--seed", 7, "--to", to,
+               *(["--rate", rate] if rate else ["--flood"]))
+    rig.start("chaos")
+    served = 0
+    until = time.monotonic() + 6 * seconds + 10
+    while rig["chaos"].running():
+        require(time.monotonic() < until, "terra-chaos does not end")
+        rig.serve(within=3)
+        served += 1
+        rig.hear(0.05)
+    rig.alive("map", "planner", "verifier")
+    words = rig["chaos"].output()
+    require(rig["chaos"].exit_code() == 0, f"terra-chaos: {words}")
+    rig.injected += sum(int(sent) for sent in re.findall(r"(\d+) datagrams", words))
+    return served
+
+
+def liar(kind, flaws, short=False):
+    @row(f"advisor lies: {kind}", "LCM lies" + ("; GATE 9" if kind in ("geometry", "costs")
+         else "; GATE 10" if kind in ("keys", "who says it") else ""), flaws, short=short)
+    def lies(rig):
+        rig.set_up("searcher")
+        # Below the gate's limits, so that it judges each of them.
+        flags = LIES[kind] + ([] if "same-attempt" in LIES[kind] else ["many-senders"])
+        served = attacked(rig, flags, rate=15 if "same-attempt" in flags else 150)
+        rig.serve()
+        rig.await_candidate()
+        return f"{served} of {served} requests served, no lie accepted, the honest advisor is"
+
+
+def attacker(kind, covers, flaws):
+    @row(f"hostile {kind} on the advice port", covers, flaws)
+    def hostile(rig):
+        rig.set_up("searcher", "logger")
+        served = attacked(rig, LIES[kind])
+        rig.alive("searcher", "logger")
+        rig.serve()
+        rig.await_candidate()
+        return f"{served} of {served} requests served; the gate runs on"
+
+
+liar("geometry", ["verifier:no-geometry"], short=True)
+liar("costs", ["verifier:no-cost"])
+liar("keys", ["verifier:no-key"])
+liar("who says it", ["verifier:no-geometry", "verifier:no-attempts"])
+attacker("bytes", "GATE 5; LCM hostile bytes, version skew", ["verifier:no-decoder"])
+attacker("datagrams", "GATE 6; LCM hostile UDP, oversize", ["verifier:no-framing"])
+
+
+@row("hostile bytes on the deployed port", "GATE 5; LCM hostile bytes", ["verifier:no-decoder"])
+def hostile_on_the_deployed_bus(rig):
+    rig.set_up("searcher", "logger")
+    served = attacked(rig, LIES["bytes"], to="deployed")
+    rig.alive("searcher", "logger")
+    return f"{served} of {served} requests served; refused and counted"
+
+
+@row("the fragment that ends every subscriber by liblcm 1.3.1", "GATE 6; LCM offset wrap",
+     ["nobody restarts"], limit_s=4.0)
+def offset_wrap(rig):
+    rig.set_up("searcher", "logger")
+    ended = 0
+    for _ in range(3):
+        rig.define("chaos", "terra-chaos", "--offset-wrap", "--to", "deployed", "--rate", "50",
+                   "--for", "1")
+        rig.start("chaos")
+        rig.await_(lambda: not rig["chaos"].running(), 5, "terra-chaos does not end")
+        dead = [name for name in ("map", "planner", "verifier", "searcher", "logger")
+                if not rig[name].running()]
+        require(bool(dead), "it ends nobody: liblcm may be repaired, and this row with it")
+        ended += len(dead)
+        rig.injected += int(re.findall(r"(\d+) misdeeds", rig["chaos"].output())[-1])
+        rig.revive(*dead)
+        rig.serve(4)
+        rig.alive(*dead)
+    return f"known limit, trusted bus: {ended} processes end, are restarted, and serve again"
+
+
+def flooder(name, flags):
+    @row(f"advice flood: {name}", "GATE 8; LCM floods", ["verifier:reads-all"], lossy=True)
+    def flood(rig):
+        rig.set_up("searcher", "logger")
+        served = attacked(rig, flags, rate=None)
+        rig.serve()
+        rig.await_candidate()
+        return f"{served} of {served} requests served; an advisor that waits is heard again"
+
+
+flooder("good routes, one sender", ["honest"])
+flooder("good routes, many senders", ["honest", "many-senders"])
+flooder("large datagrams", ["oversize", "garbage"])

@@ -1,5 +1,6 @@
 #include "advisor/descriptions.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -35,6 +36,32 @@ std::string Extent(const TerrainRegion& region) {
 
 double StepLength(Cell from, Cell to) {
   return from.x != to.x && from.y != to.y ? std::sqrt(2.0) : 1.0;
+}
+
+/// "(u - 32) / 2": a pixel's position as a cell's, of one axis.
+std::string CellOfPixel(const PictureFrame& frame, const char* pixel,
+                        int margin) {
+  const int factor = std::max(frame.cells_per_pixel, frame.pixels_per_cell);
+  std::string inside = pixel;
+  if (margin > 0) inside += " - " + std::to_string(margin);
+  if (factor == 1) return inside;
+  if (margin > 0) inside = "(" + inside + ")";
+  return frame.cells_per_pixel > 1 ? std::to_string(factor) + " * " + inside
+                                   : inside + " / " + std::to_string(factor);
+}
+
+/// Which cell a pixel shows, where a pixel's position is not the cell's.
+std::string CellOfPixelText(const PictureFrame& frame) {
+  const bool reduced = frame.cells_per_pixel > 1;
+  const std::string rounding =
+      frame.pixels_per_cell > 1 ? ", both rounded down" : "";
+  return "Pixel (u, v), counted from (0, 0) at the top left of the picture, "
+         "shows " +
+         std::string(reduced ? "the block whose top left cell is "
+                             : "the cell ") +
+         "x = " + CellOfPixel(frame, "u", frame.left_px) +
+         ", y = " + CellOfPixel(frame, "v", frame.top_px) + rounding +
+         ". Answer in cells, not in pixels.\n";
 }
 
 }  // namespace
@@ -117,6 +144,42 @@ std::string StretchText(const TerrainMap& map, const Route& baseline) {
             " at cost " + CostText(cost) + " = " +
             Number(length * cost, std::chars_format::fixed, 1) + "\n";
     first = last;
+  }
+  return text;
+}
+
+std::string PixelText(const PictureFrame& frame, const std::string& images) {
+  std::string text;
+  if (frame.cells_per_pixel > 1) {
+    const std::string side = std::to_string(frame.cells_per_pixel);
+    text += "In " + images + " one pixel stands for a block of " + side +
+            " x " + side +
+            " cells and shows the costliest terrain in it, obstacles before "
+            "all.\n";
+  } else if (frame.pixels_per_cell > 1) {
+    const std::string side = std::to_string(frame.pixels_per_cell);
+    text += "In " + images + " a cell is a square of " + side + " x " + side +
+            " pixels.\n";
+  } else {
+    text += "In " + images + " one pixel is one cell.\n";
+  }
+  const bool margin = frame.left_px > 0 || frame.top_px > 0;
+  if (margin) {
+    text += "The map has a white margin of " + std::to_string(frame.left_px) +
+            " pixels at its left and of " + std::to_string(frame.top_px) +
+            " pixels above it.\n";
+  }
+  if (margin || frame.cells_per_pixel > 1 || frame.pixels_per_cell > 1) {
+    text += CellOfPixelText(frame);
+  }
+  if (frame.grid_cells > 0) {
+    const std::string next = std::to_string(frame.grid_cells);
+    const std::string series =
+        "0, " + next + ", " + std::to_string(2 * frame.grid_cells) + ", ...";
+    text +=
+        "The numbers in the margin are cell coordinates. Faint lines run "
+        "along the left edge of the columns " +
+        series + " and along the upper edge of the rows " + series + "\n";
   }
   return text;
 }

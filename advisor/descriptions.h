@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "advisor/prompt.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
 
@@ -29,5 +30,8 @@ std::string BaselineText(const TerrainMap& map, const Route& baseline,
 
 /// The baseline's cost by stretch: successive cells of one terrain cost.
 std::string StretchText(const TerrainMap& map, const Route& baseline);
+
+/// Which cell a pixel of the named pictures shows, and what lies at the margin.
+std::string PixelText(const PictureFrame& frame, const std::string& images);
 
 }  // namespace terra::advisor

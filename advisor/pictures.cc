@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "advisor/canvas.h"
 #include "advisor/pixel_font.h"
@@ -18,6 +19,10 @@ constexpr int kTickMarginLeft = 32;
 constexpr int kTickMarginTop = 14;
 constexpr int kPairGap = 8;
 constexpr int kMarkerRadius = 6;
+/// With axes a map shows at least so many pixels along its longer side, at most
+/// so many a cell: a tiny one would vanish under its numbers and markers.
+constexpr int kLeastMapPixels = 400;
+constexpr int kMaxPixelsPerCell = 40;
 
 /// The colour of each terrain, and what a cell looks like that is blocked by
 /// the clearance rule though its terrain is not.
@@ -120,13 +125,33 @@ void DrawAxes(Canvas& canvas, const TerrainMap& map,
   }
 }
 
+/// The pixels that a route's line passes: each cell's first one, and where
+/// cells are large the middle ones and those between them.
+std::vector<Cell> LineOf(const PictureFrame& frame, const Route& route) {
+  const bool large = frame.pixels_per_cell > 2;
+  const int half = large ? frame.pixels_per_cell / 2 : 0;
+  std::vector<Cell> line;
+  for (const Cell cell : RasterizeRoute(route)) {
+    const Cell corner = PixelOf(frame, cell);
+    const Cell at{corner.x + half, corner.y + half};
+    while (large && !line.empty() && line.back() != at) {
+      const Cell last = line.back();
+      const Cell next{last.x + (at.x > last.x) - (at.x < last.x),
+                      last.y + (at.y > last.y) - (at.y < last.y)};
+      if (next == at) break;
+      line.push_back(next);
+    }
+    line.push_back(at);
+  }
+  return line;
+}
+
 void DrawRoute(Canvas& canvas, const PictureFrame& frame, const Route& route) {
-  const CellPath cells = RasterizeRoute(route);
-  const int side = frame.pixels_per_cell;
+  const std::vector<Cell> line = LineOf(frame, route);
+  const int width = std::min(frame.pixels_per_cell, 2);
   for (const int edge : {2, 1}) {  // The white edge first, then the line.
-    for (const Cell cell : cells) {
-      const Cell at = PixelOf(frame, cell);
-      canvas.Fill(at.x - edge, at.y - edge, side + 2 * edge, side + 2 * edge,
+    for (const Cell at : line) {
+      canvas.Fill(at.x - edge, at.y - edge, width + 2 * edge, width + 2 * edge,
                   edge == 2 ? kWhite : kRouteBlue);
     }
   }
@@ -141,17 +166,20 @@ void DrawMarker(Canvas& canvas, const PictureFrame& frame, Cell cell,
   const Cell at = PixelOf(frame, cell);
   const int half = frame.pixels_per_cell / 2;
   const Cell centre{at.x + half, at.y + half};
-  const int reach = kMarkerRadius + 2;
+  // Around the whole cell, whose corners are 0.71 of its side away.
+  const int radius = std::max(kMarkerRadius, frame.pixels_per_cell * 3 / 4 + 4);
+  const int reach = radius + 2;
+  const int inside = (radius - 1) * (radius - 1);
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
-      // Distances from the centre in half pixels, squared for the ring.
+      // Squared, for both markers: half a pixel more or less is a side apart.
       const int d = marker == Marker::kStart
                         ? dx * dx + dy * dy
                         : std::max(std::abs(dx), std::abs(dy)) *
                               std::max(std::abs(dx), std::abs(dy));
-      if (d <= 23 || d >= 65) continue;
-      canvas.Fill(centre.x + dx, centre.y + dy, 1, 1,
-                  d >= 30 && d <= 50 ? kBlack : kWhite);
+      if (d <= inside - 2 || d > reach * reach) continue;
+      const bool line = d >= inside + 5 && d <= (radius + 1) * (radius + 1) + 1;
+      canvas.Fill(centre.x + dx, centre.y + dy, 1, 1, line ? kBlack : kWhite);
     }
   }
   canvas.Fill(at.x, at.y, frame.pixels_per_cell, frame.pixels_per_cell, kBlack);
@@ -168,7 +196,7 @@ void DrawMarker(Canvas& canvas, const PictureFrame& frame, Cell cell,
 
 /// Ticks at a round distance, at most about a dozen along the longer side.
 int GridDistance(int cells) {
-  for (const int distance : {5, 10, 20, 50, 100, 200}) {
+  for (const int distance : {1, 2, 5, 10, 20, 50, 100, 200}) {
     if (cells <= 12 * distance) return distance;
   }
   return 500;
@@ -185,7 +213,9 @@ PictureFrame ChooseFrame(int width_cells, int height_cells, bool axes) {
     frame.grid_cells = GridDistance(std::max(width_cells, height_cells));
     if (2 * width_cells + frame.left_px <= kMaxPictureSide &&
         2 * height_cells + frame.top_px <= kMaxPictureSide) {
-      frame.pixels_per_cell = 2;
+      frame.pixels_per_cell =
+          std::clamp(kLeastMapPixels / std::max(width_cells, height_cells), 2,
+                     kMaxPixelsPerCell);
       return frame;
     }
   }

@@ -12,8 +12,9 @@ namespace terra::advisor {
 /// the paper's palette is blue as well.
 inline constexpr Color kRouteBlue = FromRgb(0x1F4FE0);
 
-/// Chooses the scale: one pixel a cell; with axes two and a margin for numbers,
-/// where that fits; an integer reduction where the map does not fit.
+/// Chooses the scale: one pixel a cell; with axes two (more on maps of less
+/// than 134 cells) and a margin for numbers, where that fits; an integer
+/// reduction where the map does not fit.
 PictureFrame ChooseFrame(int width_cells, int height_cells, bool axes);
 
 /// Draws the map in its legend's colours with start (ring, S) and goal (square,

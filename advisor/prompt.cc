@@ -72,42 +72,11 @@ std::string PictureText(const PromptInput& in) {
 }
 
 std::string CoordinateText(const PromptInput& in) {
-  const PictureFrame& frame = in.frame;
-  std::string text =
-      "COORDINATES\n"
-      "A cell is (x, y), two integers; (0, 0) is the top left one, x grows to "
-      "the right and y downwards. The map has " +
-      Range(in.shown) + ".\n";
-  const std::string which = ShowsBaseline(in) ? "images 1 and 2" : "image 1";
-  if (frame.cells_per_pixel > 1) {
-    text += "In " + which + " one pixel stands for a block of " +
-            std::to_string(frame.cells_per_pixel) + " x " +
-            std::to_string(frame.cells_per_pixel) +
-            " cells and shows the costliest terrain in it, obstacles before "
-            "all. Multiply pixel positions by " +
-            std::to_string(frame.cells_per_pixel) +
-            "; answer in cells, not in pixels.\n";
-  } else if (frame.pixels_per_cell > 1) {
-    text += "In " + which + " a cell is a square of " +
-            std::to_string(frame.pixels_per_cell) + " x " +
-            std::to_string(frame.pixels_per_cell) +
-            " pixels. Answer in cells, not in pixels.\n";
-  } else {
-    text += "In " + which + " one pixel is one cell.\n";
-  }
-  if (frame.left_px > 0 || frame.top_px > 0) {
-    text += "The map begins " + std::to_string(frame.left_px) +
-            " pixels from the left and " + std::to_string(frame.top_px) +
-            " pixels from the top of the picture.\n";
-  }
-  if (frame.grid_cells > 0) {
-    text +=
-        "The numbers at the margin are cell coordinates; a faint line "
-        "marks every " +
-        std::to_string(frame.grid_cells) +
-        "th column and row at the left or upper edge of its cells.\n";
-  }
-  return text;
+  return "COORDINATES\n"
+         "A cell is (x, y), two integers; (0, 0) is the top left one, x grows "
+         "to the right and y downwards. The map has " +
+         Range(in.shown) + ".\n" +
+         PixelText(in.frame, ShowsBaseline(in) ? "images 1 and 2" : "image 1");
 }
 
 std::string CostRuleText(const TerrainMap& map) {

@@ -14,13 +14,32 @@ namespace {
 
 using verifier::Code;
 
-constexpr std::array<std::string_view, 22> kColumns = {
-    "case_id",         "group",       "sequence",       "map_id",
-    "repeat",          "kind",        "code",           "form",
-    "baseline_cost",   "oracle_cost", "candidate_cost", "final_cost",
-    "candidate_route", "final_route", "t_prep",         "t_llm",
-    "t_det",           "tries",       "tokens_in",      "tokens_out",
-    "spend",           "request_hash"};
+constexpr std::array<std::string_view, 25> kColumns = {"case_id",
+                                                       "group",
+                                                       "sequence",
+                                                       "map_id",
+                                                       "repeat",
+                                                       "kind",
+                                                       "code",
+                                                       "form",
+                                                       "baseline_cost",
+                                                       "oracle_cost",
+                                                       "candidate_cost",
+                                                       "final_cost",
+                                                       "candidate_route",
+                                                       "final_route",
+                                                       "t_prep",
+                                                       "t_llm",
+                                                       "t_det",
+                                                       "tries",
+                                                       "tokens_in",
+                                                       "tokens_out",
+                                                       "spend",
+                                                       "request_hash",
+                                                       "candidates",
+                                                       "candidates_lower",
+                                                       "candidates_invalid"};
+constexpr std::size_t kNumUsual = 22;
 
 constexpr std::array<std::string_view, 5> kKinds = {
     "propose", "retain", "malformed", "no_answer", "no_baseline"};
@@ -121,6 +140,11 @@ Result<CaseResult> ParseRow(const CsvRow& row, const std::string& path,
   reader.Int(r.tokens_out);
   reader.Number(r.spend);
   reader.Text(r.request_hash);
+  if (row.fields.size() > kNumUsual) {
+    reader.Int(r.candidates);
+    reader.Int(r.candidates_lower);
+    reader.Int(r.candidates_invalid);
+  }
   if (reader.fault() < 0) return r;
   const auto column = static_cast<std::size_t>(reader.fault());
   return Error{ErrorCode::kInvalid, path + ":" + std::to_string(line) + ": '" +
@@ -137,44 +161,72 @@ std::string_view AttemptKindName(AttemptKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
 }
 
-std::string ResultsHeader() {
-  return CsvLine({kColumns.begin(), kColumns.end()});
+bool IsInvalidCode(Code code) {
+  switch (code) {
+    case Code::kParseError:
+    case Code::kTooFewWaypoints:
+    case Code::kStartMismatch:
+    case Code::kGoalMismatch:
+    case Code::kOutOfBounds:
+    case Code::kObstacle:
+    case Code::kWorkLimit:
+      return true;
+    default:
+      return false;
+  }
 }
 
-std::string ResultLine(const CaseResult& r) {
+std::string ResultsHeader(ResultColumns columns) {
+  const auto* end = columns == ResultColumns::kUsual
+                        ? kColumns.begin() + kNumUsual
+                        : kColumns.end();
+  return CsvLine({kColumns.begin(), end});
+}
+
+std::string ResultLine(const CaseResult& r, ResultColumns columns) {
   const auto route = [](const Route& waypoints) {
     return waypoints.empty() ? "" : FormatRoute(waypoints);
   };
-  return CsvLine({r.case_id,
-                  r.group,
-                  r.sequence,
-                  std::to_string(r.map_id),
-                  std::to_string(r.repeat),
-                  std::string(AttemptKindName(r.kind)),
-                  std::string(verifier::CodeName(r.code)),
-                  std::string(kForms[static_cast<std::size_t>(r.form)]),
-                  FormatNumber(r.baseline_cost),
-                  FormatNumber(r.oracle_cost),
-                  FormatNumber(r.candidate_cost),
-                  FormatNumber(r.final_cost),
-                  route(r.candidate_route),
-                  route(r.final_route),
-                  FormatNumber(r.t_prep),
-                  FormatNumber(r.t_llm),
-                  FormatNumber(r.t_det),
-                  std::to_string(r.tries),
-                  std::to_string(r.tokens_in),
-                  std::to_string(r.tokens_out),
-                  FormatNumber(r.spend),
-                  r.request_hash});
+  std::vector<std::string> fields = {
+      r.case_id,
+      r.group,
+      r.sequence,
+      std::to_string(r.map_id),
+      std::to_string(r.repeat),
+      std::string(AttemptKindName(r.kind)),
+      std::string(verifier::CodeName(r.code)),
+      std::string(kForms[static_cast<std::size_t>(r.form)]),
+      FormatNumber(r.baseline_cost),
+      FormatNumber(r.oracle_cost),
+      FormatNumber(r.candidate_cost),
+      FormatNumber(r.final_cost),
+      route(r.candidate_route),
+      route(r.final_route),
+      FormatNumber(r.t_prep),
+      FormatNumber(r.t_llm),
+      FormatNumber(r.t_det),
+      std::to_string(r.tries),
+      std::to_string(r.tokens_in),
+      std::to_string(r.tokens_out),
+      FormatNumber(r.spend),
+      r.request_hash};
+  if (columns == ResultColumns::kWithCandidates) {
+    for (const int count :
+         {r.candidates, r.candidates_lower, r.candidates_invalid}) {
+      fields.push_back(std::to_string(count));
+    }
+  }
+  return CsvLine(fields);
 }
 
 Status ReadResults(const std::string& path,
                    const std::function<void(CaseResult)>& use) {
   std::ifstream file(path, std::ios::binary);
-  const std::string header = ResultsHeader();
   std::string line;
-  if (!std::getline(file, line) || line + "\n" != header) {
+  std::getline(file, line);
+  const std::string header = line + "\n";
+  if (header != ResultsHeader() &&
+      header != ResultsHeader(ResultColumns::kWithCandidates)) {
     return Error{ErrorCode::kInvalid,
                  path + ":1: this is not the header of a results.csv"};
   }

@@ -49,17 +49,30 @@ struct CaseResult {
   std::int64_t tokens_out = 0;
   double spend = 0;  ///< US dollars; kImpassable = not known.
   std::string request_hash;
+  // Of answers that may have several candidates.
+  int candidates = 0;
+  int candidates_lower = 0;    ///< Valid and cheaper than the baseline.
+  int candidates_invalid = 0;  ///< Parse, count, end, border or obstacle.
 
   friend bool operator==(const CaseResult&, const CaseResult&) = default;
 };
 
 std::string_view AttemptKindName(AttemptKind kind);
 
-/// The header line of results.csv and one line, with their line ends.
-std::string ResultsHeader();
-std::string ResultLine(const CaseResult& result);
+/// Is the attempt, or a candidate of it, an invalid one: parse, count, end,
+/// border or obstacle?
+bool IsInvalidCode(verifier::Code code);
 
-/// Reads results.csv row by row, in bounded memory.
+/// The columns of a results.csv: those of the candidates are there only where
+/// an answer may have several.
+enum class ResultColumns : std::uint8_t { kUsual, kWithCandidates };
+
+/// The header line of results.csv and one line, with their line ends.
+std::string ResultsHeader(ResultColumns columns = ResultColumns::kUsual);
+std::string ResultLine(const CaseResult& result,
+                       ResultColumns columns = ResultColumns::kUsual);
+
+/// Reads results.csv of either form row by row, in bounded memory.
 /// Errors: name file and line.
 Status ReadResults(const std::string& path,
                    const std::function<void(CaseResult)>& use);

@@ -2,15 +2,12 @@
 
 #include <utility>
 
+#include "benchmark/gap.h"
 #include "benchmark/stopwatch.h"
 #include "terrain/digest.h"
-#include "terrain/native_search.h"
 
 namespace terra::benchmark {
 namespace {
-
-// Where costs are no exact units the same route may sum up to a hair more.
-constexpr double kBoundSlack = 1 + 1e-9;
 
 // The row of a case that has no baseline.
 CaseResult WithoutBaseline(const CaseWork& work, int repeat) {
@@ -40,9 +37,7 @@ Result<CaseWork> BeginCase(const Dataset& dataset, const DatasetCase& c,
   planner::LatticePlan baseline =
       planner::PlanOnLattice(*map, c.start, c.goal, options.lattice);
   const double t_baseline = plan_watch.Seconds();
-  NativeSearchOptions search;
-  search.upper_bound = baseline.cost * kBoundSlack;
-  const double oracle = NativeSearch(*map, c.start, c.goal, search).cost;
+  const double oracle = OptimalCost(*map, c.start, c.goal, baseline.cost);
   const std::int64_t map_id = MapId(*map);
   return CaseWork{c,     *std::move(map),     map_id,
                   t_map, std::move(baseline), t_baseline,

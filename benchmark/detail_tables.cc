@@ -1,5 +1,6 @@
 #include "benchmark/detail_tables.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "benchmark/run_labels.h"
@@ -16,6 +17,11 @@ std::string ShortDigest(const RunDescription& d) {
                                  kLength);
 }
 
+// May its answers have several candidates?
+bool HasCandidates(const LoadedRun& run) {
+  return SettingOf(run, "candidates", "1") != "1";
+}
+
 }  // namespace
 
 Table ProposalTable(const std::vector<LoadedRun>& runs,
@@ -28,6 +34,12 @@ Table ProposalTable(const std::vector<LoadedRun>& runs,
       {"N_NoAnswer"},       {"N_Invalid"},        {"ASR %", true},
       {"ISR %", true},      {"ISR strict %"},     {"VNSR %", true},
       {"Gap rate %", true}, {"Mean gap %", true}, {"MOGR %", true}};
+  const bool several = std::any_of(runs.begin(), runs.end(), HasCandidates);
+  if (several) {
+    table.columns.push_back({"Candidates"});
+    table.columns.push_back({"ASR per candidate %", true});
+    table.columns.push_back({"ISR per candidate %", true});
+  }
   TableBlock block;
   for (const LoadedRun& run : runs) {
     const Metrics m = MetricsOf(run, group);
@@ -40,6 +52,11 @@ Table ProposalTable(const std::vector<LoadedRun>& runs,
                           PercentCell(m.isr), strict, PercentCell(m.vnsr),
                           PercentCell(m.gap_rate), PercentCell(m.mean_gap),
                           PercentCell(m.mogr)});
+    if (!several) continue;
+    auto& row = block.rows.back();
+    row.emplace_back(HasCandidates(run) ? CountCell(m.candidates) : "-");
+    row.push_back(PercentCell(m.candidate_asr));
+    row.push_back(PercentCell(m.candidate_isr));
   }
   table.blocks.push_back(std::move(block));
   table.notes = {kIntervalNote,

@@ -14,12 +14,6 @@
 #include "verifier/verify.h"
 
 namespace terra::benchmark {
-namespace {
-
-// Where costs are no exact units the same route may sum up to a hair more.
-constexpr double kBoundSlack = 1 + 1e-9;
-
-}  // namespace
 
 CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
                    const GapOptions& options) {
@@ -33,10 +27,17 @@ CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
     gap.baseline_costs.push_back(cost);
     bound = std::min(bound, cost);
   }
-  NativeSearchOptions search;
-  search.upper_bound = bound * kBoundSlack;
-  gap.oracle_cost = NativeSearch(map, start, goal, search).cost;
+  gap.oracle_cost = OptimalCost(map, start, goal, bound);
   return gap;
+}
+
+double OptimalCost(const TerrainMap& map, Cell start, Cell goal,
+                   double known_cost) {
+  // Where costs are no exact units the same route may sum up to a hair more.
+  constexpr double kSlack = 1 + 1e-9;
+  NativeSearchOptions search;
+  search.upper_bound = known_cost * kSlack;
+  return NativeSearch(map, start, goal, search).cost;
 }
 
 Result<std::vector<CaseGap>> MeasureGaps(const Dataset& dataset,

@@ -28,6 +28,11 @@ struct CaseGap {
 CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
                    const GapOptions& options);
 
+/// Cost of the native optimum; `known_cost` is that of a route that exists, or
+/// kImpassable, and saves work.
+double OptimalCost(const TerrainMap& map, Cell start, Cell goal,
+                   double known_cost);
+
 /// Measures every case of a dataset, in its order. Errors: a map that cannot be
 /// read.
 Result<std::vector<CaseGap>> MeasureGaps(const Dataset& dataset,

@@ -160,6 +160,7 @@ MethodInfo InfoOf(const advisor::LlmBackendOptions& options,
                .every_case_attempts = !advisor};
   info.uses_baseline = info.rule.fallback;
   info.asks_model = true;
+  info.several_candidates = options.method.prompt.candidates > 1;
   info.simulated = identity.endpoint_class == "loopback";
   return info;
 }

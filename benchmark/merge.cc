@@ -110,16 +110,17 @@ Status OrderShards(std::vector<ShardRows>& shards) {
 Result<std::int64_t> CopyRows(const std::vector<ShardRows>& shards,
                               const std::string& path) {
   std::vector<std::ifstream> files;
-  std::string line;
+  std::string header;
   for (const ShardRows& shard : shards) {
     files.emplace_back(ResultsPath(shard.folder), std::ios::binary);
-    std::getline(files.back(), line);  // The header.
+    std::getline(files.back(), header);  // The same in all.
   }
   const std::string unfinished = path + ".part";
   std::ofstream to(unfinished, std::ios::binary | std::ios::trunc);
-  to << ResultsHeader();
+  to << header << "\n";
   const RunDescription& whole = shards.front().description;
   std::int64_t rows = 0;
+  std::string line;
   for (std::int64_t i = 0; i < whole.num_cases; ++i) {
     std::ifstream& from = files[static_cast<std::size_t>(i) % files.size()];
     for (int repeat = 0; repeat < whole.repeats; ++repeat, ++rows) {

@@ -61,6 +61,8 @@ struct MethodInfo {
   bool uses_baseline = true;
   /// A model answers (or somebody in its place): times of the model count.
   bool asks_model = false;
+  /// An answer may have several candidates, which are counted apart.
+  bool several_candidates = false;
   /// No real model answers: a simulation or scripted server.
   bool simulated = false;
 };

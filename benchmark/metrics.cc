@@ -11,23 +11,7 @@
 namespace terra::benchmark {
 namespace {
 
-using verifier::Code;
 using verifier::StrictlyCheaper;
-
-bool IsInvalidCode(Code code) {
-  switch (code) {
-    case Code::kParseError:
-    case Code::kTooFewWaypoints:
-    case Code::kStartMismatch:
-    case Code::kGoalMismatch:
-    case Code::kOutOfBounds:
-    case Code::kObstacle:
-    case Code::kWorkLimit:
-      return true;
-    default:
-      return false;
-  }
-}
 
 // A mean over cases; those of one cluster are drawn together.
 class ClusteredMean {
@@ -87,6 +71,9 @@ void CountRow(const std::vector<Score>& scores, const CountingRule& rule,
     m.non_degraded += c.non_degraded ? 1 : 0;
     m.comparable += c.comparable ? 1 : 0;
     m.gaps += c.gap ? 1 : 0;
+    m.candidates += score.candidates;
+    m.candidates_lower += score.candidates_lower;
+    m.candidates_invalid += score.candidates_invalid;
     acr.Add(score, c.lower, c.reduction);
     mean_gap.Add(score, c.gap, c.gap_size);
     mogr.Add(score, c.gap, c.recovery);
@@ -143,7 +130,10 @@ Score ToScore(const CaseResult& r) {
           r.tokens_in,
           r.tokens_out,
           r.spend,
-          r.repeat};
+          r.repeat,
+          r.candidates,
+          r.candidates_lower,
+          r.candidates_invalid};
 }
 
 CaseCounts CountCase(const Score& score, const CountingRule& rule) {
@@ -186,6 +176,8 @@ Metrics ComputeMetrics(const std::vector<Score>& scores,
   m.validity = Rate(m.final_valid, m.paths);
   m.ndr = Rate(m.non_degraded, m.paths);
   m.gap_rate = Rate(m.gaps, m.comparable);
+  m.candidate_asr = Rate(m.candidates_lower, m.candidates);
+  m.candidate_isr = Rate(m.candidates_invalid, m.candidates);
   MeasureTimes(scores, m);
   return m;
 }

@@ -38,6 +38,9 @@ struct Score {
   std::int64_t tokens_out = 0;
   double spend = 0;
   int repeat = 0;
+  int candidates = 0;
+  int candidates_lower = 0;
+  int candidates_invalid = 0;
 
   double t_e2e() const { return t_prep + t_llm + t_det; }
 };
@@ -76,12 +79,18 @@ struct Metrics {
   std::int64_t non_degraded = 0;
   std::int64_t comparable = 0;
   std::int64_t gaps = 0;
+  // Of runs whose answers may have several candidates; else 0.
+  std::int64_t candidates = 0;
+  std::int64_t candidates_lower = 0;
+  std::int64_t candidates_invalid = 0;
 
   std::int64_t non_improving() const { return suggested - invalid - lower; }
 
   std::optional<Estimate> asr, isr, vnsr, fir, validity, ndr, gap_rate;
   /// ISR with answers that are not in exact form counted as invalid.
   std::optional<Estimate> strict_isr;
+  /// Lower and invalid ones over all candidates, not cases.
+  std::optional<Estimate> candidate_asr, candidate_isr;
   std::optional<Estimate> acr, mean_gap;
   std::optional<Estimate> mogr;  ///< Absent for methods without fallback.
 

@@ -58,12 +58,13 @@ std::vector<ResultsFile::Place> RowPlaces(const std::string& path) {
 
 // Copies rows into a new file, in this order, and puts it in place of the old.
 Status RewriteRows(const std::string& path,
-                   const std::vector<ResultsFile::Place>& places) {
+                   const std::vector<ResultsFile::Place>& places,
+                   ResultColumns columns) {
   const std::string temporary = path + ".part";
   {
     std::ifstream from(path, std::ios::binary);
     std::ofstream to(temporary, std::ios::binary | std::ios::trunc);
-    to << ResultsHeader();
+    to << ResultsHeader(columns);
     std::string row;
     for (const ResultsFile::Place& place : places) {
       if (place.length == 0) continue;
@@ -84,10 +85,11 @@ Status RewriteRows(const std::string& path,
 }  // namespace
 
 ResultsFile::ResultsFile(std::string path, std::vector<std::string> case_ids,
-                         int repeats)
+                         int repeats, ResultColumns columns)
     : path_(std::move(path)),
       case_ids_(std::move(case_ids)),
       repeats_(repeats),
+      columns_(columns),
       done_(case_ids_.size() * static_cast<std::size_t>(repeats)) {
   for (std::size_t i = 0; i < case_ids_.size(); ++i) {
     index_of_.emplace(case_ids_[i], i);
@@ -101,8 +103,9 @@ ResultsFile::~ResultsFile() {
 
 Result<std::unique_ptr<ResultsFile>> ResultsFile::Open(
     const std::string& path, const std::vector<std::string>& case_ids,
-    int repeats) {
-  std::unique_ptr<ResultsFile> file(new ResultsFile(path, case_ids, repeats));
+    int repeats, ResultColumns columns) {
+  std::unique_ptr<ResultsFile> file(
+      new ResultsFile(path, case_ids, repeats, columns));
   const Status locked = file->Lock();
   if (!locked.ok()) return locked.error();
   const Status recovered = file->Recover();
@@ -160,7 +163,7 @@ Status ResultsFile::Recover() {
     if (!cut.ok()) return cut.error();
   }
   if (!fs::exists(path_) || fs::file_size(path_) == 0) {
-    return RewriteRows(path_, {});
+    return RewriteRows(path_, {}, columns_);
   }
   const Result<std::vector<Place>> by_slot = Scan(false);
   if (!by_slot.ok()) return by_slot.error();
@@ -169,11 +172,11 @@ Status ResultsFile::Recover() {
     done_[slot] = true;
     ++num_done_;
   }
-  return RewriteRows(path_, *by_slot);
+  return RewriteRows(path_, *by_slot, columns_);
 }
 
 Status ResultsFile::Append(const CaseResult& result) {
-  const std::string line = ResultLine(result);
+  const std::string line = ResultLine(result, columns_);
   const std::scoped_lock lock(mutex_);
   if (::write(file_, line.data(), line.size()) ==
       static_cast<ssize_t>(line.size())) {
@@ -185,7 +188,7 @@ Status ResultsFile::Append(const CaseResult& result) {
 Status ResultsFile::Finish() {
   const Result<std::vector<Place>> by_slot = Scan(true);
   if (!by_slot.ok()) return by_slot.error();
-  return RewriteRows(path_, *by_slot);
+  return RewriteRows(path_, *by_slot, columns_);
 }
 
 bool ResultsFile::IsDone(std::size_t case_index, int repeat) const {

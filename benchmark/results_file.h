@@ -23,7 +23,7 @@ class ResultsFile {
   /// Errors: not writable, locked, not a results.csv, a row of another case.
   static Result<std::unique_ptr<ResultsFile>> Open(
       const std::string& path, const std::vector<std::string>& case_ids,
-      int repeats);
+      int repeats, ResultColumns columns = ResultColumns::kUsual);
 
   ~ResultsFile();
   ResultsFile(const ResultsFile&) = delete;
@@ -45,7 +45,8 @@ class ResultsFile {
   };
 
  private:
-  ResultsFile(std::string path, std::vector<std::string> case_ids, int repeats);
+  ResultsFile(std::string path, std::vector<std::string> case_ids, int repeats,
+              ResultColumns columns);
 
   Status Lock();
   Status Recover();
@@ -57,6 +58,7 @@ class ResultsFile {
   const std::string path_;
   const std::vector<std::string> case_ids_;
   const int repeats_;
+  const ResultColumns columns_;
   std::unordered_map<std::string, std::size_t> index_of_;
   std::vector<bool> done_;  ///< By slot: case index x repeats + repeat.
   std::int64_t num_done_ = 0;

@@ -72,9 +72,11 @@ Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
   }
   OpenRun open;
   open.run = &run;
-  auto results =
-      ResultsFile::Open((fs::path(run.folder) / "results.csv").string(),
-                        options.cases, options.repeats);
+  auto results = ResultsFile::Open(
+      (fs::path(run.folder) / "results.csv").string(), options.cases,
+      options.repeats,
+      run.choice.info.several_candidates ? ResultColumns::kWithCandidates
+                                         : ResultColumns::kUsual);
   if (!results.ok()) return results.error();
   open.results = *std::move(results);
   Result<RunDescription> begun = BeginDescription(run, std::move(description));

@@ -15,6 +15,9 @@ void JudgeCandidates(const MethodInput& input, const Attempt& attempt,
     const Comparison judged = verifier::CompareRoutes(
         input.map, input.dataset_case.start, input.dataset_case.goal,
         input.baseline.waypoints, route);
+    ++result.candidates;
+    result.candidates_lower += judged.accepted() ? 1 : 0;
+    result.candidates_invalid += IsInvalidCode(judged.code) ? 1 : 0;
     const bool better =
         judged.accepted() && (result.code != Code::kAccepted ||
                               judged.candidate.cost < result.candidate_cost);

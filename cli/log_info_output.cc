@@ -1,13 +1,14 @@
 #include "cli/log_info_output.h"
 
 #include <array>
-#include <cstdarg>
 #include <cstdio>
 #include <ctime>
 #include <ostream>
 #include <string>
 
 #include <nlohmann/json.hpp>
+
+#include "cli/output.h"
 
 namespace terra::cli {
 namespace {
@@ -16,15 +17,6 @@ using logger::ChannelInfo;
 using logger::LogInfo;
 
 constexpr std::size_t kPlacesShown = 20;
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  std::array<char, 400> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return text.data();
-}
 
 std::string Time(std::int64_t time_us) {
   const std::time_t seconds = time_us / 1'000'000;
@@ -35,7 +27,7 @@ std::string Time(std::int64_t time_us) {
     return std::to_string(time_us) + " us";
   }
   return text.data() +
-         Format(".%06d UTC", static_cast<int>(time_us % 1'000'000));
+         Printed(".%06d UTC", static_cast<int>(time_us % 1'000'000));
 }
 
 long long Wide(std::int64_t value) {
@@ -47,15 +39,16 @@ double Seconds(std::int64_t from_us, std::int64_t to_us) {
 }
 
 void PrintChannels(const LogInfo& info, std::ostream& out) {
-  out << Format("\n%-24s %9s %8s %12s %8s %8s %8s %5s\n", "channel", "events",
-                "Hz", "bytes", "missing", "repeat", "badform", "sess");
+  out << Printed("\n%-24s %9s %8s %12s %8s %8s %8s %5s\n", "channel", "events",
+                 "Hz", "bytes", "missing", "repeat", "badform", "sess");
   for (const auto& [name, channel] : info.channels) {
-    out << Format("%-24s %9lld %8.2f %12lld", name.c_str(),
-                  Wide(channel.events), channel.rate_hz(), Wide(channel.bytes));
+    out << Printed("%-24s %9lld %8.2f %12lld", name.c_str(),
+                   Wide(channel.events), channel.rate_hz(),
+                   Wide(channel.bytes));
     if (channel.is_ours) {
-      out << Format(" %8lld %8lld %8lld %5lld", Wide(channel.missing),
-                    Wide(channel.repeated), Wide(channel.malformed),
-                    Wide(channel.sessions));
+      out << Printed(" %8lld %8lld %8lld %5lld", Wide(channel.missing),
+                     Wide(channel.repeated), Wide(channel.malformed),
+                     Wide(channel.sessions));
     }
     out << "\n";
   }
@@ -63,23 +56,23 @@ void PrintChannels(const LogInfo& info, std::ostream& out) {
 
 void PrintFaults(const LogInfo& info, std::ostream& out) {
   if (info.num_damaged_places > 0) {
-    out << Format("\nDAMAGE: %lld bytes at %lld places are no events\n",
-                  Wide(info.num_damaged_bytes), Wide(info.num_damaged_places));
+    out << Printed("\nDAMAGE: %lld bytes at %lld places are no events\n",
+                   Wide(info.num_damaged_bytes), Wide(info.num_damaged_places));
   }
   for (std::size_t i = 0; i < info.damage.size() && i < kPlacesShown; ++i) {
-    out << Format(
+    out << Printed(
         "  %lld bytes at byte %lld%s\n", Wide(info.damage[i].bytes),
         Wide(info.damage[i].offset),
         info.damage[i].torn_end ? " (the file ends in an event)" : "");
   }
   if (info.num_broken_seals > 0) {
-    out << Format("\nCHANGED: %lld seals do not fit\n",
-                  Wide(info.num_broken_seals));
+    out << Printed("\nCHANGED: %lld seals do not fit\n",
+                   Wide(info.num_broken_seals));
     for (std::size_t i = 0; i < info.broken_seals.size() && i < kPlacesShown;
          ++i) {
-      out << Format("  %lld bytes at byte %lld: ",
-                    Wide(info.broken_seals[i].bytes),
-                    Wide(info.broken_seals[i].offset))
+      out << Printed("  %lld bytes at byte %lld: ",
+                     Wide(info.broken_seals[i].bytes),
+                     Wide(info.broken_seals[i].offset))
           << info.broken_seals[i].reason << "\n";
     }
   }
@@ -91,22 +84,22 @@ void PrintFaults(const LogInfo& info, std::ostream& out) {
 }  // namespace
 
 void PrintLogInfo(const LogInfo& info, std::ostream& out) {
-  out << Format("%lld bytes, %lld events", Wide(info.file_bytes),
-                Wide(info.events));
+  out << Printed("%lld bytes, %lld events", Wide(info.file_bytes),
+                 Wide(info.events));
   if (info.events > 0) {
-    out << Format(", %.3f s\nfrom %s\nto   %s",
-                  Seconds(info.first_us, info.last_us),
-                  Time(info.first_us).c_str(), Time(info.last_us).c_str());
+    out << Printed(", %.3f s\nfrom %s\nto   %s",
+                   Seconds(info.first_us, info.last_us),
+                   Time(info.first_us).c_str(), Time(info.last_us).c_str());
   }
   out << "\n";
   if (info.sealed) {
-    out << Format("%lld good seals, ", Wide(info.good_seals))
+    out << Printed("%lld good seals, ", Wide(info.good_seals))
         << (info.closed ? "closed in order" : "not closed: cut or still open");
     if (info.unsealed_bytes > 0) {
-      out << Format(", %lld bytes after the last seal",
-                    Wide(info.unsealed_bytes));
+      out << Printed(", %lld bytes after the last seal",
+                     Wide(info.unsealed_bytes));
     }
-    out << Format(
+    out << Printed(
         "\n%lld events of state from before, %lld lost by the "
         "recorder\n",
         Wide(info.snapshot_events), Wide(info.lost));

@@ -1,9 +1,9 @@
 #include "cli/monitor_node.h"
 
 #include <array>
-#include <cstdarg>
 #include <cstdio>
 
+#include "cli/output.h"
 #include "verifier/verify.h"
 
 namespace terra::cli {
@@ -21,24 +21,6 @@ constexpr std::size_t kShownVerdicts = 8;
 constexpr bus::Duration kSilent = std::chrono::seconds(3);
 // A process that has been silent so long is no longer listed.
 constexpr bus::Duration kForgotten = std::chrono::minutes(2);
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  std::array<char, 512> buffer{};
-  std::va_list values;
-  va_start(values, format);
-  std::vsnprintf(buffer.data(), buffer.size(), format, values);
-  va_end(values);
-  return buffer.data();
-}
-
-// Control characters of a stranger's text must not reach the terminal.
-std::string Printable(std::string text, std::size_t longest) {
-  if (text.size() > longest) text.resize(longest);
-  for (char& c : text) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return text;
-}
 
 const char* ModeName(std::int8_t mode) {
   switch (mode) {
@@ -107,32 +89,32 @@ std::string MonitorNode::View(bus::Time now) const {
 
 std::string MonitorNode::RouteLines(bus::Time now) const {
   std::string text = "map        ";
-  text +=
-      map_ ? Format("%d x %d, id %016llx, revision %lld\n", map_->width,
-                    map_->height, static_cast<unsigned long long>(map_->map_id),
-                    static_cast<long long>(map_->map_revision))
-           : "none heard; is terra-map running on this bus?\n";
+  text += map_ ? Printed("%d x %d, id %016llx, revision %lld\n", map_->width,
+                         map_->height,
+                         static_cast<unsigned long long>(map_->map_id),
+                         static_cast<long long>(map_->map_revision))
+               : "none heard; is terra-map running on this bus?\n";
   if (!deployed_) {
     return text + "deployed   nothing heard; is terra-verifier running?\n";
   }
   const double saving = deployed_->baseline_cost - deployed_->deployed_cost;
-  text += Format("request    %016llx, (%d, %d) to (%d, %d)\n",
-                 static_cast<unsigned long long>(deployed_->request_id),
-                 deployed_->start_x, deployed_->start_y, deployed_->goal_x,
-                 deployed_->goal_y);
-  text +=
-      Format("deployed   %s%s%s, route %lld, heard %.1f s ago\n",
-             ModeName(deployed_->mode), deployed_->source.empty() ? "" : " of ",
-             Printable(deployed_->source, 63).c_str(),
-             static_cast<long long>(deployed_->route_seq),
-             Seconds(now - deployed_at_));
+  text += Printed("request    %016llx, (%d, %d) to (%d, %d)\n",
+                  static_cast<unsigned long long>(deployed_->request_id),
+                  deployed_->start_x, deployed_->start_y, deployed_->goal_x,
+                  deployed_->goal_y);
+  text += Printed("deployed   %s%s%s, route %lld, heard %.1f s ago\n",
+                  ModeName(deployed_->mode),
+                  deployed_->source.empty() ? "" : " of ",
+                  Printable(deployed_->source, 63).c_str(),
+                  static_cast<long long>(deployed_->route_seq),
+                  Seconds(now - deployed_at_));
   if (deployed_->mode == deployed_t::MODE_BASELINE ||
       deployed_->mode == deployed_t::MODE_CANDIDATE) {
-    text += Format("cost       %.3f; baseline %.3f, saving %.2f %%\n",
-                   deployed_->deployed_cost, deployed_->baseline_cost,
-                   deployed_->baseline_cost > 0
-                       ? 100 * saving / deployed_->baseline_cost
-                       : 0.0);
+    text += Printed("cost       %.3f; baseline %.3f, saving %.2f %%\n",
+                    deployed_->deployed_cost, deployed_->baseline_cost,
+                    deployed_->baseline_cost > 0
+                        ? 100 * saving / deployed_->baseline_cost
+                        : 0.0);
   }
   return text;
 }
@@ -142,15 +124,15 @@ std::string MonitorNode::VerdictLines() const {
   if (verdicts_.empty()) text += "  none yet\n";
   for (const verdict_t& verdict : verdicts_) {
     const auto code = static_cast<verifier::Code>(verdict.code);
-    text += Format("  %-20s %-16s cost %.3f against %.3f, judged in %lld us\n",
-                   Printable(verdict.subject == verdict_t::SUBJECT_BASELINE
-                                 ? "(the baseline)"
-                                 : verdict.advisor,
-                             20)
-                       .c_str(),
-                   std::string(verifier::CodeName(code)).c_str(),
-                   verdict.candidate_cost, verdict.cost_to_beat,
-                   static_cast<long long>(verdict.t_det_us));
+    text += Printed("  %-20s %-16s cost %.3f against %.3f, judged in %lld us\n",
+                    Printable(verdict.subject == verdict_t::SUBJECT_BASELINE
+                                  ? "(the baseline)"
+                                  : verdict.advisor,
+                              20)
+                        .c_str(),
+                    std::string(verifier::CodeName(code)).c_str(),
+                    verdict.candidate_cost, verdict.cost_to_beat,
+                    static_cast<long long>(verdict.t_det_us));
   }
   return text;
 }
@@ -161,11 +143,11 @@ std::string MonitorNode::ProcessLines(bus::Time now) const {
   for (const auto& [key, process] : processes_) {
     const status_t& status = process.status;
     const bus::Duration age = now - process.heard_at;
-    text +=
-        Format("  %-20s %8d  %s\n", Printable(status.status_name, 20).c_str(),
-               status.pid,
-               age > kSilent ? Format("SILENT for %.0f s", Seconds(age)).c_str()
-                             : Printable(status.state, 60).c_str());
+    text += Printed("  %-20s %8d  %s\n",
+                    Printable(status.status_name, 20).c_str(), status.pid,
+                    age > kSilent
+                        ? Printed("SILENT for %.0f s", Seconds(age)).c_str()
+                        : Printable(status.state, 60).c_str());
     if (!status.last_error.empty()) {
       text += "      last error: " + Printable(status.last_error, 160) + "\n";
     }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "terrain/cell.h"
@@ -16,6 +19,13 @@ int Fail(const Error& error);
 
 /// A cost for JSON: null instead of infinity, which JSON does not have.
 nlohmann::json JsonCost(double cost);
+
+/// As printf; at most 511 characters.
+[[gnu::format(printf, 1, 2)]] std::string Printed(const char* format, ...);
+
+/// A text of a stranger's, cut to a length and without control characters,
+/// which must not reach a terminal; what is not ASCII becomes '?'.
+std::string Printable(std::string text, std::size_t longest);
 
 /// Waypoints for JSON: [[x, y], ...].
 nlohmann::json JsonRoute(const Route& route);

@@ -119,7 +119,26 @@ nlohmann::json ToJson(const RequestNode& node) {
          {"candidate_cost", Number(verdict.candidate_cost)},
          {"cost_to_beat", Number(verdict.cost_to_beat)}});
   }
+  result["advisors"] = nlohmann::json::array();
+  for (const auto& advisor : node.advisors().advisors()) {
+    result["advisors"].push_back({{"name", advisor.name},
+                                  {"state", advisor.state},
+                                  {"last_error", advisor.error}});
+  }
   return result;
+}
+
+void PrintWhyNone(const RequestNode& node) {
+  const auto advisors = node.advisors().advisors();
+  std::printf("verdict    none: %s\n",
+              advisors.empty()              ? "no advisor was heard on this bus"
+              : node.advisors().AllGaveUp() ? "no advisor had an answer"
+                                            : "no advisor answered in time");
+  for (const auto& advisor : advisors) {
+    std::printf("advisor    %s: %s%s%s\n", advisor.name.c_str(),
+                advisor.state.c_str(), advisor.error.empty() ? "" : "; ",
+                advisor.error.c_str());
+  }
 }
 
 void PrintText(const RequestNode& node) {
@@ -146,9 +165,7 @@ void PrintText(const RequestNode& node) {
                 CodeText(verdict).c_str(), verdict.advisor.c_str(),
                 static_cast<long long>(verdict.attempt));
   }
-  if (node.verdicts().empty()) {
-    std::printf("verdict    none: no advisor answered in time\n");
-  }
+  if (node.verdicts().empty()) PrintWhyNone(node);
 }
 
 Status Draw(const RequestNode& node, const RequestArguments& arguments) {
@@ -229,7 +246,11 @@ int Ask(RequestArguments& arguments) {
   bus::EventLoop loop(inbox, stop);
   loop.Run(node);
 
-  if (arguments.json) std::cout << ToJson(node).dump() << "\n";
+  if (arguments.json) {
+    std::cout << ToJson(node).dump(-1, ' ', false,
+                                   nlohmann::json::error_handler_t::replace)
+              << "\n";
+  }
   if (!HasRoute(node)) return FailRequest(Explain(node));
   if (!arguments.json) PrintText(node);
   if (!arguments.picture.empty()) {

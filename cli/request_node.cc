@@ -38,6 +38,9 @@ RequestNode::RequestNode(const RequestPlan& plan, bus::Outbox& out)
   Listen<terra_msg::verdict_t>([this](const auto& message, bus::Time) {
     OnVerdict(message);
   });
+  Listen<terra_msg::status_t>([this](const auto& message, bus::Time) {
+    if (baseline_) advisors_.OnStatus(message);
+  });
 }
 
 void RequestNode::OnBaseline(const baseline_t& message, bus::Time now) {
@@ -83,7 +86,7 @@ bool RequestNode::Settled() const {
         return verdict.subject == terra_msg::verdict_t::SUBJECT_ADVICE &&
                verdict.code != terra_msg::verdict_t::CODE_ACCEPTED;
       });
-  return refined_ms_.has_value() || advised;
+  return refined_ms_.has_value() || advised || advisors_.AllGaveUp();
 }
 
 double RequestNode::MillisecondsSinceStart(bus::Time now) const {

@@ -8,6 +8,7 @@
 #include "bus/map_receiver.h"
 #include "bus/node.h"
 #include "bus/time.h"
+#include "cli/advisor_watch.h"
 
 namespace terra::cli {
 
@@ -26,7 +27,7 @@ struct RequestPlan {
 ///
 /// Repeats PLAN_REQUEST 5 times a second until a BASELINE and a DEPLOYED both
 /// name its id. Ends when a candidate is deployed, when an advisor's answer was
-/// refused or retained, or when the time is up.
+/// refused or retained, when all advisors gave up, or when the time is up.
 class RequestNode : public bus::Node {
  public:
   RequestNode(const RequestPlan& plan, bus::Outbox& out);
@@ -51,6 +52,7 @@ class RequestNode : public bus::Node {
   Latency deployed_ms() const { return deployed_ms_; }
   Latency refined_ms() const { return refined_ms_; }
   const bus::MapReceiver& map() const { return map_; }
+  const AdvisorWatch& advisors() const { return advisors_; }
 
  private:
   void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
@@ -71,6 +73,7 @@ class RequestNode : public bus::Node {
   std::optional<terra_msg::baseline_t> baseline_;
   std::optional<terra_msg::deployed_t> deployed_;
   std::vector<terra_msg::verdict_t> verdicts_;
+  AdvisorWatch advisors_;
   Latency baseline_ms_;
   Latency deployed_ms_;
   Latency refined_ms_;

@@ -218,7 +218,7 @@ TEST(LlmBackendTest, AQuestionHasTheSameHashOnEveryMachine) {
   const LlmIdentity identity{"openai", "gpt-5.5", "{}", "provider"};
   EXPECT_EQ(RequestHash(identity, prepared.request),
             "8009723e0edb6bd3e7ba8464b0d4e4e6");
-  EXPECT_EQ(PromptId(), "ccf9f13fdc39");
+  EXPECT_EQ(PromptId(), "35bdd893257b");
 }
 
 }  // namespace

@@ -32,13 +32,14 @@ class MergeTest : public ::testing::Test {
     ASSERT_TRUE(GenerateDataset(options, folder_.Path("data")).ok());
   }
 
-  void Run(const std::string& out, const RunOptions& options) {
+  void Run(const std::string& out, const RunOptions& options,
+           bool several_candidates = false) {
     const Dataset dataset = ReadDataset(folder_.Path("data")).value();
-    const Status done = RunMethods(
-        dataset, options,
-        {{FindDeterministicMethod("advisor", "search", false).value(),
-          folder_.Path(out), "{}"}},
-        {});
+    MethodChoice choice =
+        FindDeterministicMethod("advisor", "search", false).value();
+    choice.info.several_candidates = several_candidates;
+    const Status done =
+        RunMethods(dataset, options, {{choice, folder_.Path(out), "{}"}}, {});
     ASSERT_TRUE(done.ok()) << ErrorMessage(done);
   }
 
@@ -78,6 +79,21 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   // Side by side the shards did not take one case at a time.
   EXPECT_EQ(runs->at(0).description.jobs, 3);
   EXPECT_EQ(WhyNotComparable(runs->at(0), runs->at(1)), "");
+}
+
+TEST_F(MergeTest, ColumnsOfCandidatesAreKept) {
+  RunOptions options;
+  options.cases = {"easy_0000", "hard_0000"};
+  for (const int i : {1, 2}) {
+    options.shard = {i, 2};
+    Run("shard" + std::to_string(i), options, true);
+  }
+  const auto merged = MergeRuns(
+      {folder_.Path("shard1"), folder_.Path("shard2")}, folder_.Path("merged"));
+  ASSERT_TRUE(merged.ok()) << ErrorMessage(merged);
+  const std::vector<CaseResult> results = ResultsOf("merged");
+  ASSERT_EQ(results.size(), 2U);
+  for (const CaseResult& r : results) EXPECT_EQ(r.candidates, 1);
 }
 
 TEST_F(MergeTest, ShardsThatAreMissingOrNotFinishedAreNamed) {

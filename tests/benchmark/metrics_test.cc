@@ -130,6 +130,27 @@ TEST(Metrics, TolerantlyReadAnswersCountAsInvalidInTheStrictRate) {
   EXPECT_DOUBLE_EQ(m.strict_isr->value, 3.0 / 6);
 }
 
+TEST(Metrics, CandidatesHaveRatesOfTheirOwn) {
+  // Three cases, one attempt each; 3 + 2 + 0 candidates, of which 2 are lower
+  // and 1 is invalid.
+  std::vector<Score> scores = {Case("a", AttemptKind::kPropose, 90),
+                               Case("b", AttemptKind::kPropose, 100, true),
+                               Case("c", AttemptKind::kMalformed, 100, true)};
+  scores[0].candidates = 3;
+  scores[0].candidates_lower = 2;
+  scores[1].candidates = 2;
+  scores[1].candidates_invalid = 1;
+  const Metrics m = ComputeMetrics(scores, kAdvisor);
+  EXPECT_EQ(m.suggested, 3);
+  EXPECT_DOUBLE_EQ(m.asr->value, 1.0 / 3);
+  EXPECT_EQ(m.candidates, 5);
+  EXPECT_DOUBLE_EQ(m.candidate_asr->value, 2.0 / 5);
+  EXPECT_DOUBLE_EQ(m.candidate_isr->value, 1.0 / 5);
+  scores.pop_back();
+  scores[0].candidates = scores[1].candidates = 0;
+  EXPECT_FALSE(ComputeMetrics(scores, kAdvisor).candidate_asr.has_value());
+}
+
 TEST(Metrics, TimesAreMediansNearestRanksAndARate) {
   std::vector<Score> scores = AdvisorScores();
   scores.resize(4);

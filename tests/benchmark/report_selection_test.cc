@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "benchmark/detail_tables.h"
 #include "benchmark/paper_tables.h"
 #include "benchmark/run_labels.h"
 
@@ -133,6 +134,19 @@ TEST(LatencyTable, SaysHowManyCallsOfAModelACaseTakes) {
   EXPECT_THAT(text, HasSubstr("easy,1,1,"));
   EXPECT_THAT(text, HasSubstr("easy,1,1 to 3,"));
   EXPECT_THAT(text, HasSubstr("search,easy,1,0,"));
+}
+
+TEST(ProposalTable, HasColumnsForCandidatesWhereAnAnswerMayHaveSeveral) {
+  LoadedRun several = Model("several", 1, R"({"candidates":4})");
+  several.scores[0].candidates = 4;
+  several.scores[0].candidates_lower = 1;
+  const LoadedRun one = Model("one", 1, "{}");
+  const std::string both = ToCsv(ProposalTable({one, several}, "easy"));
+  EXPECT_THAT(both, HasSubstr(",Candidates,ASR per candidate %,"));
+  EXPECT_THAT(both, HasSubstr(",-,-,,,-,,\n"));
+  EXPECT_THAT(both, HasSubstr(",4,25.00,4.56,69.94,0.00,0.00,48.99\n"));
+  EXPECT_THAT(ToCsv(ProposalTable({one}, "easy")),
+              ::testing::Not(HasSubstr("andidate")));
 }
 
 TEST(RowTitle, OfARecordingSaysWhenItWasMade) {

@@ -78,6 +78,22 @@ TEST(ResultLine, IsReadBackWhole) {
   EXPECT_THAT(read, ElementsAre(FullResult()));
 }
 
+TEST(ResultLine, HasTheCandidatesWhereItIsToHaveThem) {
+  const TempFolder folder;
+  constexpr auto kColumns = ResultColumns::kWithCandidates;
+  CaseResult result = FullResult();
+  result.candidates = 5;
+  result.candidates_lower = 2;
+  result.candidates_invalid = 1;
+  const std::string path = folder.Write(
+      "r.csv", ResultsHeader(kColumns) + ResultLine(result, kColumns));
+  std::vector<CaseResult> read;
+  ASSERT_TRUE(ReadResults(path, [&](CaseResult r) {
+                read.push_back(std::move(r));
+              }).ok());
+  EXPECT_THAT(read, ElementsAre(result));
+}
+
 TEST(ReadResults, NamesLineAndColumnOfAFault) {
   const TempFolder folder;
   std::string bad = ResultLine(FullResult());

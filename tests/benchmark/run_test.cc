@@ -148,19 +148,43 @@ TEST_F(RunTest, WithoutFallbackTheRouteStandsAsItWasReturned) {
 
 TEST_F(RunTest, OfSeveralCandidatesTheCheapestAcceptedOneCounts) {
   const auto search = FindDeterministicMethod("advisor", "search", false);
-  const auto run = Run("several", [&](const MethodInput& input) {
+  MethodRun run = Run("several", [&](const MethodInput& input) {
     const Route best = (*search->make())->Try(input).candidates.front();
     return Propose({{{0, 0}}, input.baseline.waypoints, best});
   });
+  run.choice.info.several_candidates = true;
   ASSERT_TRUE(RunMethods(dataset_, {}, {run}, {}).ok());
   for (const CaseResult& r : ResultsOf("several")) {
-    if (r.oracle_cost < r.baseline_cost - 1e-6) {
+    const bool gap = r.oracle_cost < r.baseline_cost - 1e-6;
+    if (gap) {
       EXPECT_EQ(r.code, Code::kAccepted);
       EXPECT_NEAR(r.final_cost, r.oracle_cost, 1e-9);
     } else {
       EXPECT_EQ(r.code, Code::kTooFewWaypoints);  // None accepted: the first.
     }
+    EXPECT_EQ(r.candidates, 3);
+    EXPECT_EQ(r.candidates_lower, gap ? 1 : 0);
+    EXPECT_EQ(r.candidates_invalid, 1);
   }
+}
+
+TEST_F(RunTest, CandidatesHaveColumnsOnlyWhereAnAnswerMayHaveSeveral) {
+  const auto nothing = [](const MethodInput&) {
+    return Propose({{}});
+  };
+  MethodRun several = Run("several", nothing);
+  several.choice.info.several_candidates = true;
+  ASSERT_TRUE(
+      RunMethods(dataset_, {}, {several, Run("one", nothing)}, {}).ok());
+  const auto header = [&](const std::string& name) {
+    const std::string text =
+        ReadWholeFile(folder_.Path(name + "/results.csv"), 1 << 20).value();
+    return text.substr(0, text.find('\n'));
+  };
+  EXPECT_THAT(header("one"), ::testing::EndsWith(",request_hash"));
+  EXPECT_EQ(header("several"),
+            header("one") + ",candidates,candidates_lower,candidates_invalid");
+  for (const CaseResult& r : ResultsOf("one")) EXPECT_EQ(r.candidates, 0);
 }
 
 TEST_F(RunTest, AFinishedRunIsNotRunAgain) {

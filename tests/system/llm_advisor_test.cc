@@ -4,10 +4,13 @@
 #include <iostream>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "terrain/builtin_legends.h"
+#include "terrain/digest.h"
 #include "tests/support/scripted_llm_server.h"
 #include "tests/system/bar_map.h"
 #include "tests/system/robot.h"
@@ -83,12 +86,28 @@ std::vector<Fault> Faults() {
     reply.headers = {{"retry-after", "3600"}};
     return reply;
   }();
+  for (const char* wait :
+       {"retry-after-ms: 20", "retry-after: 1",
+        "retry-after: Thu, 01 Jan 1970 00:00:00 GMT", "retry-after: soon"}) {
+    const std::string header = wait;
+    const std::size_t colon = header.find(':');
+    ScriptedReply& busy = add("429 with " + header, kFailed, "http_status");
+    busy.status = 429;
+    busy.headers = {{header.substr(0, colon), header.substr(colon + 2)}};
+  }
   add("redirect", kFailed, "http_status") = [] {
     ScriptedReply reply = Saying("");
     reply.status = 302;
     reply.headers = {{"location", "http://127.0.0.1:1/"}};
     return reply;
   }();
+  ScriptedReply& cut = add("half of the chunks", kFailed, "transport");
+  cut.framing = testing::Framing::kChunked;
+  cut.body_share = 0.5;
+  // What is no fault: the route comes.
+  constexpr std::int8_t kPropose = advice_t::KIND_PROPOSE;
+  add("wrong content type", kPropose, "").content_type = "text/html";
+  add("late answer", kPropose, "").delay_s = 0.3;
   add("page of HTML", kFailed, "bad_reply").body = "<html>busy</html>";
   add("no UTF-8", kFailed, "bad_reply").body = "{\"choices\":\"\xff\xfe\"}";
   add("huge body", kFailed, "too_large").body = std::string(12u << 20, ' ');
@@ -173,6 +192,28 @@ TEST(LlmAdvisor, ANewRequestEndsTheCallForTheOldOneAtOnce) {
   for (const advice_t& advice : robot.advice_bus().Heard<advice_t>()) {
     EXPECT_EQ(advice.request_id, 12);
   }
+}
+
+TEST(LlmAdvisor, ANewMapEndsTheCallForTheOldOneAtOnce) {
+  Robot robot(BarMap());
+  ScriptedReply silent;
+  silent.silent = true;
+  ScriptedLlmServer server({silent, Saying(kCheaperAnswer)});
+  StartDeployedPath(robot);
+  robot.Start("model", ChatOptions(server, "600"));
+  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
+  ASSERT_TRUE(server.WaitForRequests(1, 20));
+  ByteRaster ids = ByteRaster::Zero(120, 160);
+  ids.block(30, 70, 90, 20).setConstant(9);
+  const TerrainMap changed =
+      TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value();
+  robot.SaveMap(changed);
+  const auto advice =
+      robot.advice_bus().WaitFor<advice_t>([](const advice_t& message) {
+        return message.request_id == 11;
+      });
+  ASSERT_TRUE(advice) << "the call for the old map would hang for ten minutes";
+  EXPECT_EQ(advice->map_id, MapId(changed));
 }
 
 TEST(LlmAdvisor, HeartbeatTellsCallsTokensAndLatency) {

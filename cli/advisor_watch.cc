@@ -1,0 +1,59 @@
+#include "cli/advisor_watch.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "cli/output.h"
+
+namespace terra::cli {
+namespace {
+
+// Names come from the bus: a flood of made-up ones must not fill the memory.
+constexpr std::size_t kMaxAdvisors = 64;
+constexpr std::size_t kLongestName = 63;
+constexpr std::size_t kLongestText = 400;
+constexpr int kEnoughHeartbeats = 3;
+
+std::optional<std::int64_t> CounterOf(const terra_msg::status_t& status,
+                                      std::string_view name) {
+  const auto at =
+      std::find(status.counter_name.begin(), status.counter_name.end(), name);
+  if (at == status.counter_name.end()) return std::nullopt;
+  return status.counter_value.at(
+      static_cast<std::size_t>(at - status.counter_name.begin()));
+}
+
+}  // namespace
+
+void AdvisorWatch::OnStatus(const terra_msg::status_t& status) {
+  const std::string key = status.status_name + "@" + status.host;
+  if (!CounterOf(status, "jobs") ||
+      (advisors_.size() >= kMaxAdvisors && !advisors_.contains(key))) {
+    return;
+  }
+  Advisor& advisor = advisors_[key];
+  advisor.name = Printable(status.status_name, kLongestName);
+  advisor.state = Printable(status.state, kLongestText);
+  advisor.error = Printable(status.last_error, kLongestText);
+  const bool idle = status.state == "ready" ||
+                    std::string_view(status.state).starts_with("failing");
+  const bool failed = CounterOf(status, "failures").value_or(0) > 0 &&
+                      !status.last_error.empty();
+  advisor.idle_heartbeats = idle && failed ? advisor.idle_heartbeats + 1 : 0;
+}
+
+bool AdvisorWatch::AllGaveUp() const {
+  return !advisors_.empty() &&
+         std::all_of(advisors_.begin(), advisors_.end(), [](const auto& entry) {
+           return entry.second.idle_heartbeats >= kEnoughHeartbeats;
+         });
+}
+
+std::vector<AdvisorWatch::Advisor> AdvisorWatch::advisors() const {
+  std::vector<Advisor> all;
+  for (const auto& [key, advisor] : advisors_) all.push_back(advisor);
+  return all;
+}
+
+}  // namespace terra::cli

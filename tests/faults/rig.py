@@ -62,6 +62,7 @@ class Rig:
         self.status = {}  # name: STATUS last heard
         self.baseline = self.deployed = None  # last heard
         self.verdicts, self.advice = [], []
+        self.raw = {}  # channel: the last bytes on it
         self.map_id = 0  # of the last header
         self.ends = None
         self.request_id = 0
@@ -126,7 +127,10 @@ class Rig:
             left = until - time.monotonic()
             select.select([self.deployed_bus, self.advice_bus], [], [], max(0.0, min(left, 0.05)))
             for heard in self.deployed_bus.heard():
-                self._take(heard.channel, bus.decode(heard))
+                message = bus.decode(heard)
+                if message is not None:
+                    self.raw[heard.channel] = heard.data
+                self._take(heard.channel, message)
             for heard in self.advice_bus.heard(100):
                 if heard.channel == "TERRA_ADVICE":
                     self._take(heard.channel, bus.decode(heard))

@@ -27,10 +27,11 @@ import rig
 NONE, BASELINE, CANDIDATE, HOLD = range(4)
 REPEAT_S, STATUS_S = 0.2, 1.0
 PER_SENDER, IN_ALL = 20, 200  # datagrams a second that are looked at
+MOST_BYTES = 60_000
 FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decoder no-framing
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
-needs-memory one-planner half-alive ends-in-silence counts-no-loss""".split()
+needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit""".split()
 
 
 def chain_of(cells):
@@ -132,7 +133,7 @@ class Gate:
                 message["request_id"] != self.request["request_id"]):
             return
         if self.last_seq and message["seq"] > self.last_seq + 1:
-            self.lost += (message["seq"] - self.last_seq - 1) * (not self.lacks("counts-no-loss"))
+            self.lost += (message["seq"] - self.last_seq - 1) * (not self.lacks("counts-no-loss no-size-limit"))
         self.last_seq = message["seq"]
         if not self._follow(message) or message["status"] != 1 or self.header is None:
             return
@@ -288,7 +289,8 @@ class Gate:
                 while self._read_advice(1_000):
                     pass
             for heard in self.out.heard(200):
-                self.hear(heard)
+                if heard.channel != "TERRA_ADVICE":
+                    self.hear(heard)
             self._read_advice(200)
             if self.lacks("ends-in-silence") and time.monotonic() - self.spoken_to > 0.6:
                 sys.exit("nobody speaks")
@@ -316,7 +318,8 @@ class Gate:
                 if self.lacks("no-framing"):
                     sys.exit("a datagram that is no message")
                 continue
-            if channel == b"TERRA_ADVICE":
+            fits = len(data) <= MOST_BYTES or self.lacks("no-size-limit")
+            if channel == b"TERRA_ADVICE" and fits:
                 self.hear(bus.Heard(ns, "TERRA_ADVICE", data))
         return number
 

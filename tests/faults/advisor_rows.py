@@ -193,7 +193,7 @@ def offset_wrap(rig):
      ["verifier:no-size-limit"])
 def oversize(rig):
     rig.set_up("logger")
-    served = attacked(rig, ["oversize"], rate=15)
+    served = attacked(rig, ["oversize"], seconds=8.0, rate=15)
     rig.start("searcher")
     rig.serve()
     rig.await_candidate()

@@ -121,6 +121,7 @@ class Relay:
         self.done.update(happens)
         self.done["carried"] += 1
         if "lost" in happens:
+            self.done["lost " + datagram[8:].partition(b"\0")[0].decode("ascii", "replace")] += 1
             return
         if "corrupted" in happens:
             damaged = bytearray(datagram)

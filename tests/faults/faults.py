@@ -22,6 +22,7 @@ MODULES = ["advisor_rows", "process_rows", "network_rows", "map_rows", "disk_row
 SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc",
            "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
            ' && exec "$@"', "row"]
+DOCS = HERE.parents[1] / "docs" / "faults.md"
 ROW_TIMEOUT_S = 180
 SKIPPED = 77  # as CTest is told
 
@@ -61,10 +62,22 @@ def cells(one, result):
 HEAD = ["fault", "of", "injected", "observed", "worst, ms", "checked", ""]
 
 
-def print_markdown(lines):
-    print("| " + " | ".join(HEAD) + " |\n|" + "---|" * len(HEAD))
-    for line in lines:
-        print("| " + " | ".join(cell.replace("|", "/") for cell in line) + " |")
+def markdown(head, lines):
+    rows_of = [head, ["---"] * len(head)] + [[" ".join(cell.replace("|", "/").split())
+                                              for cell in line] for line in lines]
+    return "".join("| " + " | ".join(line) + " |\n" for line in rows_of)
+
+
+def show_table(name, head, lines, arguments):
+    """Prints it, or puts it in its place in the docs."""
+    table = markdown(head, lines)
+    if not arguments.write_docs:
+        print(table, end="")
+        return
+    text = DOCS.read_text()
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    before, _, rest = text.partition(begin)
+    DOCS.write_text(before + begin + table + rest[rest.index(end):])
 
 
 def run_all(chosen, arguments):
@@ -83,8 +96,8 @@ def run_all(chosen, arguments):
             print("\n".join(result.get("slow", [])))
         if result["failures"]:
             failed.append(one.name)
-    if arguments.markdown:
-        print_markdown(lines)
+    if arguments.markdown or arguments.write_docs:
+        show_table("rows", HEAD, lines, arguments)
     print(f"{len(chosen) - len(failed)} of {len(chosen)} rows pass"
           + "".join(f"\nfailed: {name}" for name in failed), file=sys.stderr)
     return 1 if failed else 0
@@ -92,7 +105,7 @@ def run_all(chosen, arguments):
 
 def run_mutants(chosen, arguments):
     """Each row with each of its flaws, and each stand-in without a flaw."""
-    wrong = 0
+    wrong, lines = 0, []
     for one in chosen:
         controls = sorted({flaw.partition(":")[0] + ":none" for flaw in one.flaws
                            if ":" in flaw and not arguments.flaw})
@@ -101,10 +114,12 @@ def run_mutants(chosen, arguments):
             as_meant = (bool(failures) == (flaw not in controls)
                         and not "".join(failures).startswith("Traceback"))
             wrong += not as_meant
-            line = [one.name, flaw, " ".join((failures or ["passes"])[0].split())[:160]
-                    + ("" if as_meant else "  <-- NOT AS MEANT")]
-            print("| " + " | ".join(cell.replace("|", "/") for cell in line) + " |"
-                  if arguments.markdown else "  ".join(line), flush=True)
+            said = " ".join((failures or ["passes"])[0].split()).split("; verifier ended")[0]
+            lines.append([one.name, flaw, said[:120] + ("" if as_meant else
+                                                        "  <-- NOT AS MEANT")])
+            print("  ".join(lines[-1]), file=sys.stderr, flush=True)
+    if arguments.markdown or arguments.write_docs:
+        show_table("mutants", ["row", "broken", "noticed by"], lines, arguments)
     print(f"{wrong} not as meant", file=sys.stderr)
     return 1 if wrong else 0
 
@@ -116,6 +131,7 @@ def parse():
     parser.add_argument("--row", action="append", default=[])
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--markdown", action="store_true")
+    parser.add_argument("--write-docs", action="store_true")
     parser.add_argument("--mutants", action="store_true")
     parser.add_argument("--flaw", default="")
     parser.add_argument("--tell", action="store_true")

@@ -1,7 +1,6 @@
 """Networks that lose, double, reorder, delay, corrupt, and go away."""
 import struct
 
-import exact
 import field
 import lcm_bus
 import wire
@@ -53,12 +52,15 @@ def corrupted_advice(rig):
     rig.define("searcher", "terra-advisor", "--name", "searcher", port=ELSEWHERE)
     with rig.relay(ELSEWHERE, corrupt=0.3):
         rig.set_up("searcher")
-        for _ in range(15):
+        accepted = 0
+        for _ in range(20):
             rig.serve()
             rig.hear(0.3)
-        rig.await_candidate(10)
+            # (An answer that was damaged and judged stays refused when repeated.)
+            accepted += rig.has_route((2,))
     rig.alive("map", "planner", "verifier")
-    return "damaged advice is refused, the rest is accepted"
+    require(5 <= accepted, f"only {accepted} of 20 came through")
+    return f"damaged advice is refused; {accepted} of 20 answers came through whole"
 
 
 @row("baselines lost, doubled, reordered, late", "GATE 10, 11",
@@ -77,7 +79,27 @@ def planner_behind_a_relay(rig):
     return "a replaced request never comes back"
 
 
-@row("loopback down for 1 s", "LCM lo down", ["verifier:dies-on-send-error"], limit_s=4.0)
+@row("every third baseline lost, counted", "LCM loss (gaps in seq)", ["verifier:counts-no-loss"],
+     limit_s=LOSSY_S)
+def losses_counted(rig):
+    rig.define("planner", "terra-planner", "--stride", field.STRIDE, port=ELSEWHERE)
+    with rig.relay(ELSEWHERE, lose=1 / 3) as counts:
+        rig.start("map", "planner", "verifier")
+        rig.serve(15)
+        first = rig.baseline["seq"]
+        rig.hear(10)
+        # Each gap is known by what follows it.
+        heard_until = rig.baseline["seq"]
+        rig.await_(lambda: rig.status["verifier"]["utime"] > rig.baseline["utime"] + 10_000
+                   and rig.baseline["seq"] > heard_until, 5, "no heartbeat")
+        counted = rig.counter("verifier", "lost")
+    dropped = counts[PORT].get("lost TERRA_BASELINE", 0)
+    require(counted > 5, f"{counted} losses counted, {dropped} dropped")
+    require(dropped - first - 4 <= counted <= dropped, f"{counted} counted, {dropped} dropped")
+    return f"{counted} gaps counted by the gate, {dropped} dropped (the ends cannot be counted)"
+
+
+@row("loopback down for 1 s", "LCM lo down", ["verifier:dies-on-send-error"], limit_s=4.0, lossy=True)
 def loopback_down(rig):
     rig.set_up("searcher", "logger")
     for _ in range(3):
@@ -92,7 +114,7 @@ def loopback_down(rig):
 
 
 @row("multicast route deleted for 1 s", "LCM no route / route lost",
-     ["verifier:dies-on-send-error"], limit_s=4.0)
+     ["verifier:dies-on-send-error"], limit_s=4.0, lossy=True)
 def route_lost(rig):
     rig.set_up("searcher", "logger")
     for _ in range(3):
@@ -105,24 +127,22 @@ def route_lost(rig):
     return "failed sends are counted; served again when it is back"
 
 
-@row("no multicast route at the start", "LCM no route", ["verifier:half-alive"])
+@row("no multicast route at the start", "LCM no route", ["second:half-alive"])
 def no_route_at_the_start(rig):
     rig.set_up()
     shell(rig, "ip route del 224.0.0.0/4 dev lo")
     rig.define("second", "terra-verifier", "--name", "second")
-    second = "verifier" if rig.flaw else "second"
-    if rig.flaw:
-        rig["verifier"].kill()
-    rig.start(second)
+    rig.start("second")
     rig.injected = 1
-    rig.await_(lambda: not rig[second].running(), 5, "it starts without a route")
-    require("route" in rig[second].last_words(), f"no clear error: {rig[second].last_words()}")
+    rig.await_(lambda: not rig["second"].running(), 5, "it starts without a route")
+    words = rig["second"].last_words()
+    require("no route for multicast" in words, f"no clear error: {words}")
     shell(rig, "ip route add 224.0.0.0/4 dev lo")
     return "refuses to start and says what to do"
 
 
 @row("firewall drops the deployed bus for 1 s", "LCM firewall drop",
-     ["verifier:ends-in-silence"], limit_s=4.0)
+     ["verifier:ends-in-silence"], limit_s=4.0, lossy=True)
 def firewall(rig):
     rig.set_up("searcher", "logger")
     for _ in range(3):
@@ -144,7 +164,7 @@ def doubled_fragment(rig):
     for number in range(20):
         rig.serve()
         waypoints = rig.optimum(rig.ends)
-        forged = dict(rig.baseline, num_waypoints=len(waypoints),
+        forged = dict(rig.baseline, baseline_digest=number + 1, num_waypoints=len(waypoints),
                       waypoint_x=[x for x, _ in waypoints], waypoint_y=[y for _, y in waypoints])
         data = wire.encode("baseline", forged)
         body = b"TERRA_BASELINE\0" + data
@@ -156,8 +176,6 @@ def doubled_fragment(rig):
         # And the whole of it, with the digest of another route.
         rig.deployed_bus.say_raw("TERRA_BASELINE", data)
         rig.injected += 2
-        digest = exact.baseline_digest(forged["request_id"], forged["map_id"], waypoints)
-        require(digest != forged["baseline_digest"], "the forgery is none")
     rig.hear(0.5)
     rig.alive("map", "planner", "verifier")
     rig.serve()

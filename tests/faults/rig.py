@@ -22,6 +22,7 @@ import fleet
 
 PORT = 7667
 ASK_EVERY_S = 0.2
+STAND_INS = {"second": "verifier", "small": "verifier"}  # whose part they play
 SET = ("map", "planner", "verifier")
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -45,8 +46,8 @@ class Rig:
     def __init__(self, folder, bin_folder, seed=1, flaw=""):
         self.folder, self.bin, self.flaw = folder, bin_folder, flaw
         self.random = random.Random(f"{seed} row")
-        self.fields = field.two_fields(seed)
-        self.fields.append(_walled(self.fields[0]))
+        one, other = field.two_fields(seed)
+        self.fields = [one, _dearer(other), _walled(one)]
         self.legend, self.map = folder / "legend.csv", folder / "map.png"
         field.write_legend(self.legend)
         self.paths = [folder / f"map-{i}.png" for i in range(len(self.fields))]
@@ -61,6 +62,8 @@ class Rig:
         self.status = {}  # name: STATUS last heard
         self.baseline = self.deployed = None  # last heard
         self.verdicts, self.advice = [], []
+        self.raw = {}  # channel: the last bytes on it
+        self.map_id = 0  # of the last header
         self.ends = None
         self.request_id = 0
         self._journey = 0
@@ -86,7 +89,8 @@ class Rig:
         self.processes[name] = fleet.Process(name, command, self.folder)
 
     def _broken(self, name, flaw, options):
-        return [sys.executable, HERE / "flawed" / f"{name}.py", flaw,
+        script = STAND_INS.get(name, name) + ".py"
+        return [sys.executable, HERE / "flawed" / script, flaw,
                 self.folder / "fields.json", *options, "--terra", self.bin / "terra"]
 
     def __getitem__(self, name):
@@ -123,7 +127,10 @@ class Rig:
             left = until - time.monotonic()
             select.select([self.deployed_bus, self.advice_bus], [], [], max(0.0, min(left, 0.05)))
             for heard in self.deployed_bus.heard():
-                self._take(heard.channel, bus.decode(heard))
+                message = bus.decode(heard)
+                if message is not None:
+                    self.raw[heard.channel] = heard.data
+                self._take(heard.channel, message)
             for heard in self.advice_bus.heard(100):
                 if heard.channel == "TERRA_ADVICE":
                     self._take(heard.channel, bus.decode(heard))
@@ -136,6 +143,8 @@ class Rig:
         if channel == "TERRA_STATUS":
             message["counters"] = dict(zip(message["counter_name"], message["counter_value"]))
             self.status[message["status_name"]] = message
+        elif channel == "TERRA_MAP_HEADER":
+            self.map_id = message["map_id"]
         elif channel == "TERRA_BASELINE":
             self.baseline = message
         elif channel == "TERRA_DEPLOYED":
@@ -249,16 +258,20 @@ class Rig:
             relay.run(ended.is_set)
             counts[key] = dict(relay.done)
 
+        def told(one):
+            return sum(n for what, n in one.items() if what != "carried" and " " not in what)
+
         ways = [multiprocessing.Process(target=carry, args=(base, base))
                 for base in (PORT, PORT + 1)]
         for way in ways:
             way.start()
-        yield counts
-        ended.set()
-        for way in ways:
-            way.join()
-        self.injected += sum(sum(n for what, n in one.items() if what != "carried")
-                             for one in counts.values())
+        try:
+            yield counts
+        finally:
+            ended.set()
+            for way in ways:
+                way.join()
+        self.injected += sum(told(one) for one in counts.values())
 
     def _observe(self):
         rows = [one.rows for one in self.fields]
@@ -279,6 +292,13 @@ class Rig:
         self._observer.terminate()
         self._observer.wait(60)
         return json.loads((self.folder / "observed.json").read_text())
+
+
+def _dearer(known):
+    """The same map with more to pay for its commonest terrain: no route costs
+    there what it costs here."""
+    return field.Field([[4 if terrain == 3 else terrain for terrain in row]
+                        for row in known.rows])
 
 
 def _walled(known):

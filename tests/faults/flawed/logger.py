@@ -7,6 +7,7 @@ import itertools
 import os
 import pathlib
 import select
+import signal
 import struct
 import sys
 import time
@@ -38,18 +39,22 @@ def main():
     except OSError as problem:
         if flaw != "starts-anyway":
             sys.exit(f"{folder}: {problem}")
-    kept, written, numbers = [], 0, itertools.count()
+    kept, written, at, numbers = [], 0, 0, itertools.count()
+    lost = False
+    ended = []
+    signal.signal(signal.SIGTERM, lambda *_: ended.append(True))
     status_at = 0.0
-    while True:
+    while not ended:
         select.select(taps, [], [], 0.02)
         for heard in itertools.chain(taps[0].heard(), taps[1].heard(50)):
             kept.append(event(next(numbers), heard))
         if flaw != "writes-at-the-end" or len(kept) > 100_000:
             try:
-                os.write(file.fileno(), b"".join(kept)) if kept and file else None
-                written += len(kept)
+                if kept and file:
+                    at += os.pwrite(file.fileno(), b"".join(kept), at)
+                    written, error = written + len(kept), ""
             except OSError as problem:
-                error = str(problem)
+                error, lost = str(problem), True
             kept = []
         if time.monotonic() > status_at:
             status_at = time.monotonic() + 1
@@ -59,6 +64,7 @@ def main():
                 "status_name": "logger", "state": f"failing: {error}" if bad else "ready",
                 "num_counters": 1, "counter_name": ["acknowledged"],
                 "counter_value": [acknowledged]})
+    sys.exit(1 if lost and flaw != "silent" else 0)
 
 
 if __name__ == "__main__":

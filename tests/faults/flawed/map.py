@@ -19,7 +19,7 @@ import field
 import rig
 
 FLAWS = "none sends-no-tile ends-on-a-bad-file".split()
-SIDE = 64
+SIDE = 128  # of a tile
 _ZSTD = ctypes.CDLL("libzstd.so.1")
 _ZSTD.ZSTD_compress.restype = ctypes.c_size_t
 
@@ -63,7 +63,7 @@ class Server:
         self.header = {
             "map_revision": self.revision, "width": field.SIDE, "height": field.SIDE,
             "cell_size_m": 1.0, "num_terrains": len(costs), "terrain_id": list(range(len(costs))),
-            "terrain_cost": costs, "terrain_rgb": [0] * len(costs),
+            "terrain_cost": costs, "terrain_rgb": list(range(len(costs))),
             "terrain_name": [f"t{i}" for i in range(len(costs))], "corner_cutting": 1,
             "clearance_cells": 0, "tile_side": SIDE, "num_tiles": len(digests),
             "tile_digest": digests}

@@ -27,10 +27,11 @@ import rig
 NONE, BASELINE, CANDIDATE, HOLD = range(4)
 REPEAT_S, STATUS_S = 0.2, 1.0
 PER_SENDER, IN_ALL = 20, 200  # datagrams a second that are looked at
+MOST_BYTES = 60_000
 FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decoder no-framing
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
-needs-memory one-planner half-alive ends-in-silence""".split()
+needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit""".split()
 
 
 def chain_of(cells):
@@ -56,7 +57,7 @@ class Gate:
         self.second = 0
         self.decision = self.route_seq = 0
         self.message = None
-        self.from_replaced = 0
+        self.from_replaced = self.lost = self.last_seq = 0
         self.files = []
 
     def lacks(self, flaw):
@@ -100,7 +101,7 @@ class Gate:
         elif beaten:
             self._deploy(BASELINE, self._waypoints(self.baseline), beaten, None)
         else:
-            self._deploy(HOLD, [], None, None)
+            self._deploy(HOLD, [], None, None, cause=7)
 
     def _plan_request(self, message):
         if self.lacks("slow"):
@@ -131,6 +132,9 @@ class Gate:
         if self.lacks("no-request-from-baseline") and (
                 message["request_id"] != self.request["request_id"]):
             return
+        if self.last_seq and message["seq"] > self.last_seq + 1:
+            self.lost += (message["seq"] - self.last_seq - 1) * (not self.lacks("counts-no-loss no-size-limit"))
+        self.last_seq = message["seq"]
         if not self._follow(message) or message["status"] != 1 or self.header is None:
             return
         if message["map_id"] != self.header["map_id"]:
@@ -188,6 +192,9 @@ class Gate:
                     return code if old else None
             if message["anchor_index"]:
                 return 43
+            if (message["anchor_x"], message["anchor_y"]) != (
+                    self.baseline["start_x"], self.baseline["start_y"]):
+                return 12
         if self.lacks("closes-early") and time.monotonic() - self.baseline_at > 1.0:
             return 43
         if self.lacks("trusts-clock") and abs(message["utime"] / 1e6 - time.time()) > 60:
@@ -224,7 +231,7 @@ class Gate:
 
     # ---- What is said ----
 
-    def _deploy(self, mode, waypoints, cost, advice):
+    def _deploy(self, mode, waypoints, cost, advice, cause=0):
         self.route = (mode, waypoints, cost, advice) if waypoints else None
         self.decision += 1
         self.route_seq += 1
@@ -236,6 +243,7 @@ class Gate:
         chain = chain_of(cells)
         self.message = {
             "decision": self.decision, "route_seq": self.route_seq, "mode": mode,
+            "cause": cause,
             "request_id": of["request_id"], "map_id": self.header["map_id"] if self.header else 0,
             "baseline_digest": of.get("baseline_digest", 0),
             **{name: of[name] for name in ("start_x", "start_y", "goal_x", "goal_y")},
@@ -266,7 +274,7 @@ class Gate:
             self._deploy(NONE, [], None, None)
 
     def status(self):
-        counters = {"from_replaced_planner": self.from_replaced}
+        counters = {"from_replaced_planner": self.from_replaced, "lost": self.lost}
         self.out.say("TERRA_STATUS", {
             "status_name": "verifier", "state": "ready", "num_counters": len(counters),
             "counter_name": list(counters), "counter_value": list(counters.values())})
@@ -281,7 +289,8 @@ class Gate:
                 while self._read_advice(1_000):
                     pass
             for heard in self.out.heard(200):
-                self.hear(heard)
+                if heard.channel != "TERRA_ADVICE":
+                    self.hear(heard)
             self._read_advice(200)
             if self.lacks("ends-in-silence") and time.monotonic() - self.spoken_to > 0.6:
                 sys.exit("nobody speaks")
@@ -309,7 +318,8 @@ class Gate:
                 if self.lacks("no-framing"):
                     sys.exit("a datagram that is no message")
                 continue
-            if channel == b"TERRA_ADVICE":
+            fits = len(data) <= MOST_BYTES or self.lacks("no-size-limit")
+            if channel == b"TERRA_ADVICE" and fits:
                 self.hear(bus.Heard(ns, "TERRA_ADVICE", data))
         return number
 
@@ -319,7 +329,16 @@ def main():
     if flaw not in FLAWS:
         sys.exit(f"no such flaw: {flaw}")
     with open(sys.argv[2], encoding="ascii") as rows:
-        gate = Gate(flaw, [field.Field(one) for one in json.load(rows)])
+        fields = [field.Field(one) for one in json.load(rows)]
+    try:
+        gate = Gate(flaw, fields)
+    except OSError as error:
+        if flaw != "half-alive":
+            sys.exit(f"there is no route for multicast, or: {error}")
+        time.sleep(60)
+    opened = len(os.listdir("/proc/self/fd"))
+    if opened > 1_000 and flaw != "half-alive":
+        sys.exit(f"{opened} file descriptors are open")
     if flaw == "dies-on-send-error":
         send = gate.out.send
         gate.out.send = lambda datagram: send(datagram) or sys.exit("cannot send")

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <set>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -34,7 +35,8 @@ bool StaysInside(const std::string& relative) {
          std::find(path.begin(), path.end(), "..") == path.end();
 }
 
-Result<DatasetCase> ParseCase(const CsvTable& table, const CsvRow& row,
+// Takes the row's texts: a table may have a million rows.
+Result<DatasetCase> ParseCase(const CsvTable& table, CsvRow row,
                               const std::string& path) {
   const auto fail = [&](const std::string& what) {
     return Error{ErrorCode::kInvalid,
@@ -54,10 +56,16 @@ Result<DatasetCase> ParseCase(const CsvTable& table, const CsvRow& row,
   }
   for (std::size_t i = 0; i < row.fields.size(); ++i) {
     const std::string& column = table.header[i];
-    if (column == "case_id") result.case_id = row.fields[i];
-    if (column == "map") result.map = row.fields[i];
-    if (column == "group") result.group = row.fields[i];
-    if (IsExtraColumn(column)) result.extra[column] = row.fields[i];
+    std::string& field = row.fields[i];
+    if (column == "case_id") {
+      result.case_id = std::move(field);
+    } else if (column == "map") {
+      result.map = std::move(field);
+    } else if (column == "group") {
+      result.group = std::move(field);
+    } else if (IsExtraColumn(column)) {
+      result.extra[column] = std::move(field);
+    }
   }
   if (result.case_id.empty()) return fail("empty case_id");
   if (!StaysInside(result.map)) {
@@ -68,20 +76,23 @@ Result<DatasetCase> ParseCase(const CsvTable& table, const CsvRow& row,
 }
 
 Result<std::vector<DatasetCase>> ReadCases(const std::string& path) {
-  const Result<CsvTable> table = ReadCsv(
+  Result<CsvTable> table = ReadCsv(
       path, {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y"});
   if (!table.ok()) return table.error();
   std::vector<DatasetCase> cases;
-  std::set<std::string> ids;
-  for (const CsvRow& row : table->rows) {
-    Result<DatasetCase> one = ParseCase(*table, row, path);
+  cases.reserve(table->rows.size());  // So that the ids do not move.
+  std::unordered_set<std::string_view> ids;
+  for (CsvRow& row : table->rows) {
+    const int line = row.line;
+    Result<DatasetCase> one = ParseCase(*table, std::move(row), path);
     if (!one.ok()) return one.error();
-    if (!ids.insert(one->case_id).second) {
-      return Error{ErrorCode::kInvalid, path + ":" + std::to_string(row.line) +
-                                            ": case_id '" + one->case_id +
+    cases.push_back(std::move(*one));
+    const std::string& id = cases.back().case_id;
+    if (!ids.insert(id).second) {
+      return Error{ErrorCode::kInvalid, path + ":" + std::to_string(line) +
+                                            ": case_id '" + id +
                                             "' comes twice"};
     }
-    cases.push_back(std::move(*one));
   }
   return cases;
 }

@@ -391,15 +391,43 @@ TEST(FlightRecorder, ARunIsAuditedCleanAndItsInputsReplayToTheSameDecisions) {
   }
 }
 
-// 110 bytes each in the log.
+std::uintmax_t BytesLogged(const Robot& robot) {
+  std::uintmax_t bytes = 0;
+  for (const std::string& log : LogsOf(robot)) {
+    bytes += std::filesystem::file_size(log);
+  }
+  return bytes;
+}
+
+void SendPose(Robot& robot, int x) {
+  pose_t pose{};
+  pose.pose_x = x;
+  robot.deployed_bus().Send(pose);
+}
+
+// What the smallest receive buffer of a kernel holds, and some time to read it.
 void SendPoses(Robot& robot, int count) {
   for (int i = 0; i < count; ++i) {
-    pose_t pose{};
-    pose.pose_x = i;
-    robot.deployed_bus().Send(pose);
-    // What the smallest receive buffer of a kernel holds, and some time to
-    // read it.
+    SendPose(robot, i);
     if (i % 50 == 49) std::this_thread::sleep_for(milliseconds(2));
+  }
+}
+
+// The same for a logger that may not be scheduled for long: the next poses when
+// these are on the disk.
+void SendPosesAsTheyAreLogged(Robot& robot, int count) {
+  constexpr int kAtOnce = 500;
+  constexpr std::uintmax_t kBytesEach = 100;  // 110 in the log
+  for (int i = 0; i < count;) {
+    const std::uintmax_t before = BytesLogged(robot);
+    for (int n = 0; n < kAtOnce && i < count; ++n, ++i) {
+      SendPose(robot, i);
+    }
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (BytesLogged(robot) < before + kAtOnce * kBytesEach) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << "poses were lost";
+      std::this_thread::sleep_for(milliseconds(5));
+    }
   }
 }
 
@@ -413,7 +441,7 @@ TEST(FlightRecorder, EachPartOfARotatedLogIsAuditedAlone) {
   for (std::int64_t request = 11; request < 14; ++request) {
     ASSERT_TRUE(robot.Ask(request, kBarStart, kBarGoal));
     ASSERT_TRUE(robot.WaitForDeployed(request, deployed_t::MODE_CANDIDATE));
-    SendPoses(robot, 8'000);
+    SendPosesAsTheyAreLogged(robot, 8'000);
   }
   ASSERT_EQ(logger.Terminate(), 0);
   const std::vector<std::string> parts = LogsOf(robot);

@@ -40,7 +40,7 @@ def main():
         if flaw != "starts-anyway":
             sys.exit(f"{folder}: {problem}")
     kept, written, at, numbers = [], 0, 0, itertools.count()
-    lost = False
+    lost, failed_at = False, 0.0
     ended = []
     signal.signal(signal.SIGTERM, lambda *_: ended.append(True))
     status_at = 0.0
@@ -52,9 +52,11 @@ def main():
             try:
                 if kept and file:
                     at += os.pwrite(file.fileno(), b"".join(kept), at)
-                    written, error = written + len(kept), ""
+                    written += len(kept)
+                    if time.monotonic() - failed_at > 2:
+                        error = ""
             except OSError as problem:
-                error, lost = str(problem), True
+                error, lost, failed_at = str(problem), True, time.monotonic()
             kept = []
         if time.monotonic() > status_at:
             status_at = time.monotonic() + 1

@@ -133,7 +133,7 @@ class Gate:
                 message["request_id"] != self.request["request_id"]):
             return
         if self.last_seq and message["seq"] > self.last_seq + 1:
-            self.lost += (message["seq"] - self.last_seq - 1) * (not self.lacks("counts-no-loss no-size-limit"))
+            self.lost += (message["seq"] - self.last_seq - 1) * (not self.lacks("counts-no-loss"))
         self.last_seq = message["seq"]
         if not self._follow(message) or message["status"] != 1 or self.header is None:
             return

@@ -16,7 +16,8 @@ sys.path[:0] = PATHS
 os.environ["PYTHONPATH"] = ":".join(PATHS)
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 
-import rows  # noqa: E402 (needs the path above)
+import fleet  # noqa: E402 (both need the path above)
+import rows  # noqa: E402
 
 MODULES = ["advisor_rows", "process_rows", "network_rows", "map_rows", "disk_rows", "machine_rows"]
 SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc",
@@ -37,7 +38,7 @@ def run_row(one, arguments, flaw=""):
         begin = time.monotonic()
         try:
             done = subprocess.run(command, capture_output=True, text=True, check=False,
-                                  timeout=ROW_TIMEOUT_S)
+                                  timeout=ROW_TIMEOUT_S, preexec_fn=fleet.die_with_parent)
             words = done.stderr[-2000:]
         except subprocess.TimeoutExpired:
             words = f"not done after {ROW_TIMEOUT_S} s"

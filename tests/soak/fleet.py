@@ -12,7 +12,8 @@ TERMINATION_S = 20.0
 PR_SET_PDEATHSIG = 1
 
 
-def _die_with_parent():
+def die_with_parent():
+    """For preexec_fn: nothing outlives who started it, however that ends."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
@@ -32,7 +33,7 @@ class Process:
         with open(self._output, "ab") as output:
             self._child = subprocess.Popen(
                 [*map(str, self.command), *options], stdout=output,
-                stderr=subprocess.STDOUT, preexec_fn=_die_with_parent)
+                stderr=subprocess.STDOUT, preexec_fn=die_with_parent)
 
     @property
     def pid(self):

@@ -5,6 +5,7 @@ import importlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -115,7 +116,8 @@ def run_mutants(chosen, arguments):
             as_meant = (bool(failures) == (flaw not in controls)
                         and not "".join(failures).startswith("Traceback"))
             wrong += not as_meant
-            said = " ".join((failures or ["passes"])[0].split()).split("; verifier ended")[0]
+            said = re.split(r"; \w+ ended with",
+                            " ".join((failures or ["passes"])[0].split()))[0]
             lines.append([one.name, flaw, said[:120] + ("" if as_meant else
                                                         "  <-- NOT AS MEANT")])
             print("  ".join(lines[-1]), file=sys.stderr, flush=True)

@@ -119,6 +119,7 @@ def run_mutants(chosen, arguments):
             wrong += not as_meant
             said = re.split(r"; \w+ ended with",
                             " ".join((failures or ["passes"])[0].split()))[0]
+            said = said.replace(f"{HERE}/", "")  # no paths of this machine
             lines.append([one.name, flaw, said[:120] + ("" if as_meant else
                                                         "  <-- NOT AS MEANT")])
             print("  ".join(lines[-1]), file=sys.stderr, flush=True)

@@ -154,7 +154,7 @@ class Gate:
         self.baseline, self.baseline_cost = message, cost
         if self.lacks("waits-for-advice"):
             return
-        if not self.route or cost < self.route[2]:
+        if not self.route or self.route[2] is None or cost < self.route[2]:
             self._deploy(BASELINE, waypoints, cost, None)
         elif self.route:
             self._deploy(*self.route)
@@ -211,7 +211,7 @@ class Gate:
         if not self.lacks("no-geometry") and cost is None:
             return 21
         if cost and not self.lacks("no-cost") and not self.lacks("no-key") and (
-                not cost < (self.route[2] if self.route else self.baseline_cost)):
+                not cost < (self.route and self.route[2] or self.baseline_cost)):
             return 30
         return 1
 
@@ -337,8 +337,10 @@ def main():
             sys.exit(f"there is no route for multicast, or: {error}")
         time.sleep(60)
     opened = len(os.listdir("/proc/self/fd"))
-    if opened > 1_000 and flaw != "half-alive":
-        sys.exit(f"{opened} file descriptors are open")
+    if opened > 1_000:  # (nor could select() wait on what comes after them)
+        if flaw != "half-alive":
+            sys.exit(f"{opened} file descriptors are open")
+        time.sleep(60)
     if flaw == "dies-on-send-error":
         send = gate.out.send
         gate.out.send = lambda datagram: send(datagram) or sys.exit("cannot send")

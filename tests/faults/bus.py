@@ -35,13 +35,13 @@ class Tap(lcm_bus.Peer):
         self.overflown = 0
 
     def say(self, channel, message):
+        """Returns whether the network took it."""
         message = dict(message, utime=int(time.time() * 1e6), session=self._session)
         message["seq"] = self._sequences[channel] = self._sequences.get(channel, 0) + 1
-        self.say_raw(channel, wire.encode(TYPES[channel], message))
-        return message
+        return self.say_raw(channel, wire.encode(TYPES[channel], message))
 
     def say_raw(self, channel, data):
-        self.send(struct.pack(">II", lcm_bus.SHORT, next(self._datagrams))
+        return self.send(struct.pack(">II", lcm_bus.SHORT, next(self._datagrams))
                   + channel.encode() + b"\0" + data)
 
     def send(self, datagram):

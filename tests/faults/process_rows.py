@@ -45,33 +45,29 @@ def gate_stalled(rig):
     return "on waking it deploys for the newest request within 1 s"
 
 
-@row("planner killed (-9) and gone for 2 s", "GATE 16", ["verifier:forgets", "nobody restarts"])
-def planner_killed(rig):
+def planner_away(rig, go, come_back, within):
+    """Three times for 2 s; the route in force stays."""
     rig.set_up("searcher")
     for _ in range(3):
         rig.await_candidate()
         route = rig.deployed["route_seq"]
-        rig["planner"].kill()
+        go()
         rig.injected += 1
         rig.hear(2)
         require(rig.deployed["route_seq"] == route, "the route in force changed")
-        rig.revive("planner")
-        rig.serve(BACK_S)
+        come_back()
+        rig.serve(within)
+
+
+@row("planner killed (-9) and gone for 2 s", "GATE 16", ["verifier:forgets", "nobody restarts"])
+def planner_killed(rig):
+    planner_away(rig, rig["planner"].kill, lambda: rig.revive("planner"), BACK_S)
     return "the last verified route stays in force; the restarted planner serves"
 
 
 @row("planner hangs (SIGSTOP) for 2 s", "GATE 16", ["verifier:forgets"])
 def planner_hangs(rig):
-    rig.set_up("searcher")
-    for _ in range(3):
-        rig.await_candidate()
-        route = rig.deployed["route_seq"]
-        rig["planner"].stop()
-        rig.injected += 1
-        rig.hear(2)
-        require(rig.deployed["route_seq"] == route, "the route in force changed")
-        rig["planner"].resume()
-        rig.serve()
+    planner_away(rig, rig["planner"].stop, rig["planner"].resume, 2.0)
     return "the last verified route stays in force"
 
 

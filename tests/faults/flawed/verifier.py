@@ -57,7 +57,7 @@ class Gate:
         self.second = 0
         self.decision = self.route_seq = 0
         self.message = None
-        self.from_replaced = self.lost = self.last_seq = 0
+        self.send_failed = self.from_replaced = self.lost = self.last_seq = 0
         self.files = []
 
     def lacks(self, flaw):
@@ -260,7 +260,8 @@ class Gate:
 
     def _say(self, message):
         if not self.lacks("half-alive"):
-            self.out.say("TERRA_DEPLOYED", message)
+            sent = self.out.say("TERRA_DEPLOYED", message)
+            self.send_failed += not sent and not self.lacks("counts-no-loss")
 
     def repeat(self):
         if self.message and not self.lacks("says-once"):
@@ -274,7 +275,7 @@ class Gate:
             self._deploy(NONE, [], None, None)
 
     def status(self):
-        counters = {"from_replaced_planner": self.from_replaced, "lost": self.lost}
+        counters = {"send_failed": self.send_failed, "from_replaced_planner": self.from_replaced, "lost": self.lost}
         self.out.say("TERRA_STATUS", {
             "status_name": "verifier", "state": "ready", "num_counters": len(counters),
             "counter_name": list(counters), "counter_value": list(counters.values())})

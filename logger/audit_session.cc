@@ -13,6 +13,9 @@ namespace {
 using terra_msg::deployed_t;
 using terra_msg::verdict_t;
 
+// A bound on work; more than two have not been seen.
+constexpr std::size_t kMaxGates = 4;
+
 // The gate's only option that decides anything, from its CONFIG.
 double MarginIn(const std::string& config) {
   constexpr std::string_view kKey = "margin=";
@@ -64,12 +67,12 @@ void SessionAudit::Take(Decisions::const_iterator at) {
   if (logged.index < contents_.state_end) {
     TakeState(at);
   } else if (decision == 1) {
-    gate_.emplace(options_);
+    gates_.assign(1, ReplayedGate(options_));
     decision_offset_ = 0;
     route_seq_offset_ = 0;
     causes_.BeginAt(0);
     Decide(at);
-  } else if (Follows(decision) && gate_) {
+  } else if (Follows(decision) && !gates_.empty()) {
     Decide(at);
   } else {
     TakeFirst(logged);
@@ -86,22 +89,21 @@ void SessionAudit::TakeState(Decisions::const_iterator at) {
   if (decisions_.rbegin()->second.index < contents_.state_end) return;
   if (const auto* deployed = std::get_if<deployed_t>(&at->second.message)) {
     BeginFrom(*deployed, at->second.index);
-  } else if (!gate_ && !lost_) {
+  } else if (gates_.empty() && !lost_) {
     BeginUnasked(*at);
-  } else if (gate_ &&
-             Hear(at, causes_.WaysTo(at->second, *gate_, route_seq_offset_))) {
-    Number(at->first);
-    gate_->decided().pop_front();
+  } else if (std::vector<ReplayedGate> after = GatesAfter(at); !after.empty()) {
+    Go(std::move(after), at->first);
   }
 }
 
 // The snapshot has no DEPLOYED of this gate, so it was not asked for a route
 // yet and knew cancelled requests only.
 void SessionAudit::BeginUnasked(const Decisions::value_type& verdict) {
-  gate_.emplace(options_);
+  ReplayedGate gate(options_);
   for (const std::int64_t id : later_.ReplacedBefore(verdict.first).requests) {
-    gate_->Hear({verifier::RequestEvent{id, true, {}, {}}});
+    gate.Hear({verifier::RequestEvent{id, true, {}, {}}});
   }
+  gates_.assign(1, std::move(gate));
   decision_offset_ = verdict.first;
   route_seq_offset_ = 0;
   causes_.BeginAt(verdict.second.index);
@@ -150,7 +152,7 @@ void SessionAudit::TakeFirst(const Logged<Decided>& logged) {
 }
 
 void SessionAudit::BeginFrom(const deployed_t& deployed, std::int64_t index) {
-  gate_.reset();
+  gates_.clear();
   Result<ReplayedGate> gate = GateInState(
       deployed, contents_, options_, later_.ReplacedBefore(deployed.decision));
   if (!gate) {
@@ -160,62 +162,104 @@ void SessionAudit::BeginFrom(const deployed_t& deployed, std::int64_t index) {
          deployed.decision, gate.error().message);
     return;
   }
-  gate_ = *std::move(gate);
-  lost_ = false;
-  gate_->decided().clear();
-  decision_offset_.reset();
+  gate->decided().clear();
   route_seq_offset_ =
-      Difference(deployed.route_seq, gate_->deployed().route_seq);
+      Difference(deployed.route_seq, gate->deployed().route_seq);
+  gates_.assign(1, *std::move(gate));
+  lost_ = false;
+  decision_offset_.reset();
   causes_.BeginAt(index);
   ++audit_.anchors;
 }
 
 void SessionAudit::Decide(Decisions::const_iterator at) {
+  std::vector<ReplayedGate> after = GatesAfter(at);
+  if (after.empty()) return Explain(at);
+  at_begin_ = false;
+  Go(std::move(after), at->first);
+  ++(std::holds_alternative<verdict_t>(at->second.message) ? audit_.verdicts
+                                                           : audit_.deployed);
+}
+
+// These gates made the decision. The first one of a log tells how the log's
+// numbers differ from theirs.
+void SessionAudit::Go(std::vector<ReplayedGate> gates, std::int64_t decision) {
+  gates_ = std::move(gates);
+  if (!decision_offset_) {
+    decision_offset_ =
+        Difference(decision, NumberOf(gates_.front().decided().front()));
+  }
+  for (ReplayedGate& gate : gates_) gate.decided().pop_front();
+}
+
+// Reports a decision that no gate made, by what the likeliest one makes of it.
+void SessionAudit::Explain(Decisions::const_iterator at) {
   const std::string said = "the log says " + InWords(at->second.message);
-  if (gate_->decided().empty()) {
-    const Ways ways = causes_.WaysTo(at->second, *gate_, route_seq_offset_);
-    if (!Hear(at, ways) && !ways.missing.empty()) {
+  ReplayedGate& gate = gates_.front();
+  if (gate.decided().empty()) {
+    const Ways ways = causes_.WaysTo(at->second, gate, route_seq_offset_);
+    if (!ways.missing.empty()) {
       return Fail(Finding::Kind::kMissingInput, at->first, ways.missing);
     }
-    // The last one shows what differs.
-    if (gate_->decided().empty() && !ways.all.empty()) {
-      gate_->Hear(ways.all.back());
-    }
+    if (!ways.all.empty()) gate.Hear(ways.all.back());
   }
-  if (gate_->decided().empty()) {
+  if (gate.decided().empty()) {
     return Fail(Finding::Kind::kMismatch, at->first,
                 said + ", but from its inputs follows nothing");
   }
-  at_begin_ = false;
-  Number(at->first);
-  const Decided made = MessageOf(gate_->decided().front(), *decision_offset_);
-  gate_->decided().pop_front();
-  if (Essence(made) != Essence(at->second.message)) {
-    return Fail(Finding::Kind::kMismatch, at->first,
-                said + ", but from its inputs follows " + InWords(made));
-  }
-  ++(std::holds_alternative<verdict_t>(made) ? audit_.verdicts
-                                             : audit_.deployed);
+  const verifier::Decision& front = gate.decided().front();
+  const std::int64_t offset =
+      decision_offset_.value_or(Difference(at->first, NumberOf(front)));
+  Fail(Finding::Kind::kMismatch, at->first,
+       said + ", but from its inputs follows " +
+           InWords(MessageOf(front, offset)));
 }
 
-// Goes the first way from which the logged decision follows; returns false when
-// there is none.
-bool SessionAudit::Hear(Decisions::const_iterator at, const Ways& ways) {
+// The gates from which the logged decision follows.
+std::vector<ReplayedGate> SessionAudit::GatesAfter(
+    Decisions::const_iterator at) {
+  std::vector<ReplayedGate> after;
+  for (const ReplayedGate& gate : gates_) AddGatesAfter(at, gate, after);
+  return after;
+}
+
+// Goes the first way from which the logged decision follows, if there is one.
+void SessionAudit::AddGatesAfter(Decisions::const_iterator at,
+                                 const ReplayedGate& gate,
+                                 std::vector<ReplayedGate>& after) {
+  if (!gate.decided().empty()) {
+    Add(at, gate, after);
+    return;
+  }
+  const Ways ways = causes_.WaysTo(at->second, gate, route_seq_offset_);
   for (const GateEvents& way : ways.all) {
-    ReplayedGate trial = *gate_;
+    ReplayedGate trial = gate;
     trial.Hear(way);
-    if (Fits(trial, at)) {
-      gate_ = std::move(trial);
-      return true;
+    if (!Add(at, trial, after)) continue;
+    if (trial.deployed().route_seq != gate.deployed().route_seq) {
+      // How far the robot was known to be decides what is kept of its place.
+      ReplayedGate driven_on = gate;
+      driven_on.Hear(causes_.AllPoses());
+      driven_on.Hear(way);
+      Add(at, std::move(driven_on), after);
     }
+    return;
   }
-  return false;
 }
 
-// The first decision tells how the log's numbers differ from this gate's.
-void SessionAudit::Number(std::int64_t decision) {
-  if (decision_offset_) return;
-  decision_offset_ = Difference(decision, NumberOf(gate_->decided().front()));
+// Adds a gate that decided as the log has it, unless there is one like it.
+bool SessionAudit::Add(Decisions::const_iterator at, ReplayedGate gate,
+                       std::vector<ReplayedGate>& after) const {
+  if (!Fits(gate, at)) return false;
+  const auto is_alike = [&gate](const ReplayedGate& other) {
+    return other.driven().place() == gate.driven().place() &&
+           other.driven().on_route() == gate.driven().on_route() &&
+           other.decided().size() == gate.decided().size();
+  };
+  if (after.size() < kMaxGates && std::ranges::none_of(after, is_alike)) {
+    after.push_back(std::move(gate));
+  }
+  return true;
 }
 
 // Returns whether what a gate decided is what the log has from here on.
@@ -257,7 +301,7 @@ LogContents::Decided SessionAudit::MessageOf(
 void SessionAudit::Fail(Finding::Kind kind, std::int64_t decision,
                         std::string what) {
   lost_ = true;
-  gate_.reset();
+  gates_.clear();
   audit_.Add({kind, session_, decision, std::move(what)});
 }
 

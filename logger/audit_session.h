@@ -34,8 +34,13 @@ class SessionAudit {
   void BeginFrom(const terra_msg::deployed_t& deployed, std::int64_t index);
   void Decide(Decisions::const_iterator at);
   bool Fits(const ReplayedGate& gate, Decisions::const_iterator at) const;
-  bool Hear(Decisions::const_iterator at, const Ways& ways);
-  void Number(std::int64_t decision);
+  std::vector<ReplayedGate> GatesAfter(Decisions::const_iterator at);
+  void AddGatesAfter(Decisions::const_iterator at, const ReplayedGate& gate,
+                     std::vector<ReplayedGate>& after);
+  bool Add(Decisions::const_iterator at, ReplayedGate gate,
+           std::vector<ReplayedGate>& after) const;
+  void Go(std::vector<ReplayedGate> gates, std::int64_t decision);
+  void Explain(Decisions::const_iterator at);
   Decided MessageOf(const verifier::Decision& made,
                     std::int64_t decision_offset) const;
   void Fail(Finding::Kind kind, std::int64_t decision, std::string what);
@@ -48,7 +53,10 @@ class SessionAudit {
   DecisionCauses causes_;
   verifier::GateOptions options_;
 
-  std::optional<ReplayedGate> gate_;  // Nothing = the state is not known.
+  // Gates that decided as the log has it so far: more than one where it cannot
+  // tell how far along a route before the robot was known to be. None = the
+  // state is not known.
+  std::vector<ReplayedGate> gates_;
   // The log's numbers are this far ahead of the gate's own. Where the log
   // begins, the first decision tells.
   std::optional<std::int64_t> decision_offset_;

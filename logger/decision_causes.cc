@@ -27,21 +27,6 @@ BaselineEvent AnswerOf(std::int64_t planner, std::int64_t request_id) {
   return answer;  // For map 0, so that nothing else comes of it.
 }
 
-// The last route before a decision that is known to be another request's.
-std::int64_t LastRouteOfOthers(
-    std::int64_t request_id, std::int64_t decision,
-    const std::map<std::int64_t, Logged<LogContents::Decided>>& decisions) {
-  std::int64_t last = 0;
-  for (const auto& [number, logged] : decisions) {
-    if (number >= decision) break;
-    const auto* deployed = std::get_if<deployed_t>(&logged.message);
-    if (deployed != nullptr && deployed->request_id != request_id) {
-      last = std::max(last, deployed->route_seq);
-    }
-  }
-  return last;
-}
-
 }  // namespace
 
 std::int64_t Difference(std::int64_t a, std::int64_t b) {
@@ -254,7 +239,7 @@ void DecisionCauses::WaysToJudged(const verdict_t& verdict, const Step& advice,
   Add({state, advice}, ways);  // Late by its route_seq, or not at all.
   const bool late = verdict.code == verdict_t::CODE_LATE;
   if (gate_->driven().Passed(verdict.anchor_index) != late) {
-    Add({state, PosesUntil(late, verdict, ways), advice}, ways);
+    Add({state, PosesFor(verdict, ways), advice}, ways);
   }
 }
 
@@ -267,14 +252,39 @@ bool DecisionCauses::HasCurrentKey(const verdict_t& verdict) const {
 // ---- Steps ----
 
 DecisionCauses::Step DecisionCauses::Map(std::int64_t map_id, Ways& ways) {
-  if (map_id == 0 || map_id == gate_->map_id()) return GateEvents{};
+  if (map_id == 0) return GateEvents{};
+  const std::vector<std::int64_t> passing = MapsInPassing(map_id);
+  if (map_id == gate_->map_id() && passing.empty()) return GateEvents{};
   const bus::MapPtr map = contents_.maps.Find(map_id);
   if (!map) {
     ways.missing = Missing("all of map", map_id);
     return std::nullopt;
   }
-  return GateEvents{verifier::MapEvent{
-      std::shared_ptr<const TerrainMap>(map, &map->map), map_id}};
+  const std::shared_ptr<const TerrainMap> terrain(map, &map->map);
+  GateEvents events;
+  for (const std::int64_t id : passing) {
+    events.emplace_back(verifier::MapEvent{terrain, id});  // only named
+  }
+  events.emplace_back(verifier::MapEvent{terrain, map_id});
+  return events;
+}
+
+// While there is no route, maps come and go without a decision; later verdicts
+// call them stale.
+std::vector<std::int64_t> DecisionCauses::MapsInPassing(
+    std::int64_t map_id) const {
+  std::vector<std::int64_t> passing;
+  if (gate_->baseline_digest() != 0 || !gate_->deployed().waypoints.empty()) {
+    return passing;
+  }
+  const std::vector<std::int64_t>& sequence = contents_.maps.sequence();
+  for (const std::int64_t id : later_.ReplacedBefore(decision_).maps) {
+    if (id != map_id && id != gate_->map_id() &&
+        std::ranges::find(sequence, id) != sequence.end()) {
+      passing.push_back(id);
+    }
+  }
+  return passing;
 }
 
 // A map that was replaced without a decision: by the one decided on next, else
@@ -326,44 +336,6 @@ DecisionCauses::Step DecisionCauses::Baseline(std::int64_t digest,
     return std::nullopt;
   }
   return GateEvents{verifier::ToEvent(found->message)};
-}
-
-// Which poses the gate had heard no decision says. So a pose is evidence where
-// a verdict needs one, and only those before the verdict are.
-DecisionCauses::Step DecisionCauses::PosesUntil(bool passed,
-                                                const verdict_t& verdict,
-                                                Ways& ways) const {
-  const auto found = contents_.poses.find(session_);
-  const auto missing = [passed, &ways]() -> Step {
-    if (passed)
-      ways.missing = "the log does not hold a POSE that shows it late";
-    return std::nullopt;
-  };
-  if (found == contents_.poses.end()) return missing();
-  const std::int64_t others =
-      LastRouteOfOthers(gate_->deployed().request_id, decision_,
-                        contents_.decisions.at(session_));
-  DrivenRoute driven = gate_->driven();
-  GateEvents heard;
-  for (std::size_t i = gate_->poses_heard();
-       driven.Passed(verdict.anchor_index) != passed; ++i) {
-    if (i >= found->second.size() || found->second[i].index >= index_) {
-      return missing();
-    }
-    verifier::PoseEvent event = verifier::ToEvent(found->second[i].message);
-    event.route_seq = Difference(event.route_seq, route_seq_offset_);
-    // From before the state that the audit began with: the robot's place may
-    // have come from a route before, but not from another request's.
-    if (found->second[i].index < began_at_ &&
-        found->second[i].message.deployed_route_seq > others) {
-      event.route_seq = gate_->deployed().route_seq;
-    }
-    if (event.route_seq == gate_->deployed().route_seq) {
-      driven.OnPose(event.cell);
-    }
-    heard.emplace_back(event);
-  }
-  return heard;
 }
 
 }  // namespace terra::logger

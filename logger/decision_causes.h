@@ -39,6 +39,10 @@ class DecisionCauses {
   Ways WaysTo(const Logged<LogContents::Decided>& decision,
               const ReplayedGate& gate, std::int64_t route_seq_offset);
 
+  /// All poses that the gate of the last WaysTo may have heard besides, before
+  /// that decision.
+  GateEvents AllPoses() const;
+
  private:
   /// Events of a part of a way; nothing when the log does not hold them.
   using Step = std::optional<GateEvents>;
@@ -56,11 +60,13 @@ class DecisionCauses {
                     Ways& ways);
 
   Step Map(std::int64_t map_id, Ways& ways);
+  std::vector<std::int64_t> MapsInPassing(std::int64_t map_id) const;
   Step MapAfter(std::int64_t map_id, Ways& ways);
   Step Request(const terra_msg::deployed_t& deployed, Ways& ways) const;
   Step Baseline(std::int64_t digest, std::int64_t session, Ways& ways) const;
-  Step PosesUntil(bool passed, const terra_msg::verdict_t& verdict,
-                  Ways& ways) const;
+  template <typename Enough>
+  GateEvents PosesUntil(const Enough& enough) const;
+  Step PosesFor(const terra_msg::verdict_t& verdict, Ways& ways) const;
   static void Add(std::initializer_list<Step> steps, Ways& ways);
   bool HasCurrentKey(const terra_msg::verdict_t& verdict) const;
 

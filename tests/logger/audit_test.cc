@@ -58,7 +58,7 @@ TEST(Audit, TheEventfulRunHasEveryKindOfVerdict) {
 }
 
 TEST(Audit, EveryDecisionOfARandomRunIsMadeAgain) {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Messages messages = RandomRun(seed);
     const Audit audit = AuditOf(messages);
     EXPECT_TRUE(audit.clean()) << "seed " << seed << ": " << Text(audit);
@@ -217,6 +217,57 @@ TEST(Audit, AfterAMissingInputPosesOfTheRequestBeforeShowNothing) {
   const Audit audit = AuditOf(WithoutAttempt(run.messages(), lost));
   ASSERT_EQ(audit.num_findings, 1) << Text(audit);
   EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
+}
+
+std::int16_t LastCode(const RecordedRun& run) {
+  return Said<verdict_t>(run.messages()).back().code;
+}
+
+// Which poses the gate had heard when the map changed no decision says; its
+// place along the route that it goes back to depends on them.
+TEST(Audit, ARobotThatDroveOnIsAtTheStartOfTheRouteAfterANewMap) {
+  // On the baseline's own cells for a while, then close to the bar.
+  const Route close_by = {
+      RecordedRun::kStart, {40, 40}, {69, 29}, {90, 29}, RecordedRun::kGoal};
+  for (const int driven_to : {8, 100}) {
+    RecordedRun run;
+    run.Ask(21);
+    run.Advise(run.Baseline().value(), close_by);
+    const deployed_t driven = run.Deployed().value();
+    ASSERT_EQ(driven.mode, deployed_t::MODE_CANDIDATE);
+    run.DriveTo(driven, 8);
+    run.AdviseFrom(driven, 5);
+    ASSERT_EQ(LastCode(run), verdict_t::CODE_LATE);
+    run.DriveTo(driven, driven_to);
+    run.SaveMap(RecordedRun::BarMap(10, 25));  // The terrain there is worse.
+    run.Run(std::chrono::seconds(3));
+    deployed_t back = run.Deployed().value();
+    ASSERT_EQ(back.mode, deployed_t::MODE_BASELINE);
+    // The new map's baseline is the same route, so no decision names it.
+    back.baseline_digest = run.Baseline().value().baseline_digest;
+    run.AdviseFrom(back, 6);
+    EXPECT_EQ(LastCode(run) == verdict_t::CODE_LATE, driven_to == 8);
+    const Audit audit = AuditOf(run.messages());
+    EXPECT_TRUE(audit.clean()) << driven_to << ": " << Text(audit);
+  }
+}
+
+TEST(Audit, AMapThatCameAndWentWhileNothingWasAskedIsStale) {
+  RecordedRun run;
+  run.SaveMap(RecordedRun::BarMap(9));
+  run.Run(std::chrono::seconds(3));
+  const std::int64_t passing =
+      Said<terra_msg::map_header_t>(run.messages()).back().map_id;
+  run.SaveMap(RecordedRun::BarMap(8));
+  run.Run(std::chrono::seconds(3));
+  run.Ask(21);
+  terra_msg::baseline_t baseline = run.Baseline().value();
+  ASSERT_NE(baseline.map_id, passing);
+  baseline.map_id = passing;
+  run.Advise(baseline, {RecordedRun::kStart, RecordedRun::kGoal});
+  ASSERT_EQ(LastCode(run), verdict_t::CODE_STALE_MAP);
+  const Audit audit = AuditOf(run.messages());
+  EXPECT_TRUE(audit.clean()) << Text(audit);
 }
 
 TEST(Audit, AForgedVerdictIsAMismatch) {

@@ -45,8 +45,8 @@ std::string ChannelsIn(LogReader& reader) {
 // Writes the bytes into a file of that folder and opens it.
 Result<LogReader> OpenFile(const testing::TempFolder& folder,
                            const Bytes& bytes) {
-  return LogReader::Open(folder.Write(
-      "some.lcmlog", std::string(bytes.begin(), bytes.end())));
+  return LogReader::Open(
+      folder.Write("some.lcmlog", std::string(bytes.begin(), bytes.end())));
 }
 
 TEST(LogReader, GivesBackWhatWasAppended) {

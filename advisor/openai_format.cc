@@ -80,6 +80,16 @@ class OpenAiFormat : public WireFormat {
     return result;
   }
 
+  /// The last event repeats the whole response.
+  json JoinEvents(const std::vector<json>& events) const override {
+    if (events.empty()) return nullptr;
+    const json& last = events.back();
+    if (TextOr(last, "type") == "error") return {{"error", last}};
+    const json& response = MemberOf(last, "response");
+    const std::string status = TextOr(response, "status");
+    return status == "in_progress" || status == "queued" ? nullptr : response;
+  }
+
   void ReadErrorJson(const json& error, WireError& result) const override {
     result.final = TextOr(error, "code") == "insufficient_quota" ||
                    TextOr(error, "type") == "insufficient_quota";

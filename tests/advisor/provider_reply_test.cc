@@ -142,14 +142,32 @@ TEST(ProviderReplyTest, TheReasonIsFoundInEveryFormOfError) {
   }
 }
 
-TEST(ProviderReplyTest, AStreamIsCalledOne) {
-  ScriptedReply stream;
-  stream.content_type = "text/event-stream";
-  stream.body = "data: {\"choices\":[]}\n\ndata: [DONE]\n\n";
-  ScriptedLlmServer server({stream});
-  const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
-  EXPECT_EQ(reply.reason, NoAnswer::kBadReply);
-  EXPECT_THAT(reply.error, HasSubstr("event stream"));
+// Copying and writing JSON recurse: what is nested deeply must not get there.
+TEST(ProviderReplyTest, DeepNestingIsNoAnswerAndExhaustsNoStack) {
+  const std::string open(3'000'000, '[');
+  const std::string close(3'000'000, ']');
+  ScriptedReply inside = Good("chat");
+  inside.body.insert(1, R"("a":")"
+                        "\\/"
+                        R"(","b":)" +
+                            open + close + ",");
+  ScriptedReply around = Failing(400);
+  around.body = open + R"({"error":{"message":"x"}})" + close;
+  ScriptedReply stream = Good("chat");
+  stream.body = "data: " + inside.body + "\n\n";
+  ScriptedLlmServer server({inside, around, stream, Good("chat")});
+  auto client = Client("chat", server.url());
+  EXPECT_EQ(client->Ask(Question(), {}).reason, NoAnswer::kBadReply);
+  EXPECT_EQ(client->Ask(Question(), {}).reason, NoAnswer::kHttpStatus);
+  const LlmReply reply = client->Ask(Question(), {});
+  EXPECT_EQ(reply.text, "Yes") << "the stream had no end: asked again";
+  EXPECT_EQ(reply.tries, 2);
+  const std::string sixty = std::string(60, '[') + std::string(60, ']');
+  EXPECT_EQ(MakeChatFormat()
+                ->ReadReply("{\"a\":\"[[[[{\\\"[\",\"b\":" + sixty +
+                            R"(,"choices":[{"message":{"content":"Yes"}}]})")
+                .text,
+            "Yes");
 }
 
 TEST(ProviderReplyTest, AWrongContentTypeDoesNotMatter) {

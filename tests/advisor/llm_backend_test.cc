@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -179,7 +179,28 @@ TEST(LlmBackendTest, FailuresInSuccessionOpenTheBreaker) {
   EXPECT_EQ(server.request_count(), 3);
   EXPECT_EQ(backend->figures().state, "failing: breaker open");
   EXPECT_THAT(backend->Advise(problem.task(), {}).error,
-              HasSubstr("breaker_open"));
+              HasSubstr("breaker_open: calls pause after --breaker-failures"));
+}
+
+TEST(LlmBackendTest, ALimitThatIsReachedIsNamed) {
+  const Problem problem;
+  ScriptedLlmServer server({Saying("Yes")});
+  LlmBackendOptions often = ChatOptions(server.url());
+  often.service.limits.calls_per_minute = 1;
+  LlmBackendOptions dear = ChatOptions(server.url());
+  dear.service.prices = {"local-model=1000:1000"};
+  dear.service.limits.spend_per_hour_usd = 0.5;
+  for (const auto& [options, limit] :
+       {std::pair<LlmBackendOptions, std::string>{
+            often, "rate_limit: --calls-per-minute is reached"},
+        {dear, "spend_limit: --spend-per-hour is reached"}}) {
+    const auto backend = Make(options);
+    EXPECT_EQ(backend->Advise(problem.task(), {}).kind, AnswerKind::kRetain);
+    const AdviceAnswer refused = backend->Advise(problem.task(), {});
+    EXPECT_EQ(refused.kind, AnswerKind::kFailed);
+    EXPECT_THAT(refused.error, HasSubstr(limit));
+  }
+  EXPECT_EQ(server.request_count(), 2);
 }
 
 TEST(LlmBackendTest, TargetsOfLlmAstarAreJoinedByTheNativeSearch) {

@@ -80,14 +80,18 @@ class OpenAiFormat : public WireFormat {
     return result;
   }
 
-  /// The last event repeats the whole response.
+  /// Its end repeats the whole response.
   json JoinEvents(const std::vector<json>& events) const override {
-    if (events.empty()) return nullptr;
-    const json& last = events.back();
-    if (TextOr(last, "type") == "error") return {{"error", last}};
-    const json& response = MemberOf(last, "response");
-    const std::string status = TextOr(response, "status");
-    return status == "in_progress" || status == "queued" ? nullptr : response;
+    for (const json& event : events) {
+      if (TextOr(event, "type") == "error") return {{"error", event}};
+      const json& response = MemberOf(event, "response");
+      const std::string status = TextOr(response, "status");
+      if (response.is_object() && status != "in_progress" &&
+          status != "queued") {
+        return response;
+      }
+    }
+    return nullptr;
   }
 
   void ReadErrorJson(const json& error, WireError& result) const override {

@@ -3,11 +3,14 @@
 
 #include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/advisor/golden_question.h"
 #include "tests/advisor/provider_calls.h"
 
 namespace terra::advisor {
@@ -208,6 +211,26 @@ TEST_P(StreamedReplyTest, AKeyIsCutOutOfItEvenInPieces) {
   EXPECT_EQ(reply.text, "[key]") << reply.error;
   EXPECT_THAT(reply.body, HasSubstr("[key]"));
   EXPECT_THAT(reply.body, Not(HasSubstr(secret.substr(7))));
+}
+
+/// Streams that llama.cpp's server sent when it was asked for them.
+TEST(StreamsOfALocalServer, AreReadInAllItsForms) {
+  for (const auto& [provider, form, tokens_in, status] :
+       {std::tuple{"chat", "chat", 132, ReplyStatus::kTruncated},
+        {"anthropic", "messages", 132, ReplyStatus::kTruncated},
+        {"openai", "responses", 132, ReplyStatus::kAnswered}}) {
+    SCOPED_TRACE(form);
+    const auto format = MakeWireFormat(provider);
+    const auto whole = format->Whole(
+        ProviderSample(std::string("llama-server-") + form + "-stream.txt"));
+    ASSERT_TRUE(whole);
+    const WireReply reply = format->ReadReply(*whole);
+    EXPECT_EQ(reply.status, status) << "it does not tell responses' truncation";
+    EXPECT_FALSE(reply.text.empty());
+    EXPECT_EQ(reply.model, "local-model");
+    EXPECT_EQ(reply.usage.tokens_in, tokens_in);
+    EXPECT_EQ(reply.usage.tokens_out, 4);
+  }
 }
 
 TEST(StreamedOpenAiTest, AnErrorWithoutAnObjectOfThatNameIsOne) {

@@ -58,7 +58,7 @@ TEST(Audit, TheEventfulRunHasEveryKindOfVerdict) {
 }
 
 TEST(Audit, EveryDecisionOfARandomRunIsMadeAgain) {
-  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Messages messages = RandomRun(seed);
     const Audit audit = AuditOf(messages);
     EXPECT_TRUE(audit.clean()) << "seed " << seed << ": " << Text(audit);

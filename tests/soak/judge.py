@@ -82,10 +82,20 @@ def _explained(finding, audit, info):
     if kind == "damage":
         # Killed between a write and its seal.
         return not info["closed"] and "have no seal" in what
-    lost = {name: channel.get("missing", 0) for name, channel in info["channels"].items()}
+    channels = info["channels"]
     if kind == "gap":
-        return lost.get("TERRA_VERDICT", 0) + lost.get("TERRA_DEPLOYED", 0) > 0
+        return any(channels.get(name, {}).get("missing", 0) > 0
+                   for name in ("TERRA_VERDICT", "TERRA_DEPLOYED"))
+    # Under a flood gate and recorder look at other parts of it.
+    advice = channels.get("TERRA_ADVICE", {})
+    flooded = advice.get("missing", 0) + advice.get("malformed", 0) > 0
     if kind == "missing input" and "ADVICE" in what:
-        return lost.get("TERRA_ADVICE", 0) > 0
+        return flooded
+    if kind == "mismatch":
+        # An advisor was impersonated (the audit notes say so): of two messages
+        # under its name the log lacks the one that was judged. That explains no
+        # verdict about where the robot was or what was in force.
+        return (flooded and bool(audit["notes"]) and "VERDICT" in what
+                and "late" not in what and "stale" not in what)
     # It may stand in the log before, where this one begins in mid-run.
     return kind == "missing input" and audit["anchors"] > 0

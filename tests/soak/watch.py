@@ -1,5 +1,6 @@
 """Asks for routes, drives, and judges what the gate deploys."""
 
+import math
 import random
 import time
 
@@ -12,6 +13,11 @@ ASK_EVERY_S = 0.2
 POSE_EVERY_S = 0.1
 CELLS_PER_POSE = 2
 BASELINE, CANDIDATE = 1, 2  # modes with a route
+
+
+def _same_cost(own, said):
+    """A route that cannot be driven costs no number on the bus."""
+    return math.isnan(said) if math.isinf(own) else abs(own - said) <= EPSILON
 
 
 class Request:
@@ -175,7 +181,7 @@ class Watch:
         baseline = self._baselines.get(message.baseline_digest)
         if baseline is None:
             self.unknown_baselines += 1  # its message was lost, or is not here yet
-        elif not abs(known.route_cost(baseline) - message.baseline_cost) <= EPSILON:
+        elif not _same_cost(known.route_cost(baseline), message.baseline_cost):
             # On the map in force, which may not be the one it was planned on.
             return f"the baseline costs {known.route_cost(baseline)}, says {message.baseline_cost}"
         if cost > message.baseline_cost + EPSILON:

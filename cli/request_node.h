@@ -48,6 +48,8 @@ class RequestNode : public bus::Node {
   const std::vector<terra_msg::verdict_t>& verdicts() const {
     return verdicts_;
   }
+  /// Did the gate judge any advice on this request, or deploy it?
+  bool advised() const;
   Latency baseline_ms() const { return baseline_ms_; }
   Latency deployed_ms() const { return deployed_ms_; }
   Latency refined_ms() const { return refined_ms_; }

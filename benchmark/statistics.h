@@ -29,7 +29,7 @@ inline constexpr std::uint64_t kBootstrapSeed = 20'260'101;
 
 /// A mean (all sums over all counts) with the percentile bootstrap interval
 /// over clusters (Efron 1979). Deterministic. Resamples without a term are left
-/// out. Pre: at least one count > 0.
+/// out. Takes all cores. Pre: at least one count > 0.
 Estimate BootstrapMean(std::span<const Cluster> clusters);
 
 /// Exact two-sided McNemar test (McNemar 1947): the chance, with a fair coin,

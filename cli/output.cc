@@ -11,9 +11,9 @@
 
 namespace terra::cli {
 
-int Fail(const Error& error) {
+int Fail(const Error& error, int exit_code) {
   std::cerr << "terra: " << error.message << "\n";
-  return kCouldNot;
+  return exit_code;
 }
 
 nlohmann::json JsonCost(double cost) {

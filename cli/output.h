@@ -10,12 +10,13 @@
 
 namespace terra::cli {
 
-/// Exit codes of every command; wrong usage (2) is main's business.
+/// Exit codes of every command.
 inline constexpr int kDone = 0;
 inline constexpr int kCouldNot = 1;
+inline constexpr int kWrongUsage = 2;
 
-/// Says on stderr why a command could not do its work; returns kCouldNot.
-int Fail(const Error& error);
+/// Says on stderr why a command could not do its work; returns the exit code.
+int Fail(const Error& error, int exit_code = kCouldNot);
 
 /// A cost for JSON: null instead of infinity, which JSON does not have.
 nlohmann::json JsonCost(double cost);

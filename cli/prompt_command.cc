@@ -71,7 +71,8 @@ Status Write(const advisor::LlmRequest& request, const std::string& out) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) {
-    return Error{ErrorCode::kUnavailable, out + ": " + failed.message()};
+    return Error{ErrorCode::kUnavailable,
+                 out + ": the folder cannot be made: " + failed.message()};
   }
   int number = 0;
   for (const auto& picture : request.pictures) {
@@ -104,7 +105,7 @@ int RunPrompt(const PromptArguments& arguments) {
   } else {
     std::cout << arguments.out << ": prompt.txt and "
               << question.request.pictures.size() << " images, prepared in "
-              << FormatNumber(1e3 * prepared->seconds) << " ms\n";
+              << Printed("%.1f", 1e3 * prepared->seconds) << " ms\n";
   }
   return kDone;
 }

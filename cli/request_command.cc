@@ -16,6 +16,7 @@
 #include "bus/process.h"
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
+#include "cli/output.h"
 #include "cli/request_node.h"
 #include "terrain/digest.h"
 #include "terrain/files/picture.h"
@@ -37,12 +38,6 @@ struct RequestArguments {
   std::string picture;
   bool json = false;
 };
-
-bool HasRoute(const RequestNode& node) {
-  return node.deployed() &&
-         (node.deployed()->mode == deployed_t::MODE_BASELINE ||
-          node.deployed()->mode == deployed_t::MODE_CANDIDATE);
-}
 
 std::string_view BaselineStatus(std::int8_t status) {
   switch (status) {
@@ -97,7 +92,7 @@ nlohmann::json ToJson(const RequestNode& node) {
       deployed ? Number(deployed->baseline_cost) : nlohmann::json();
   result["deployed_cost"] =
       deployed ? Number(deployed->deployed_cost) : nlohmann::json();
-  result["deployed"] = !HasRoute(node) ? "none"
+  result["deployed"] = !node.HasRoute() ? "none"
                        : deployed->mode == deployed_t::MODE_CANDIDATE
                            ? "candidate"
                            : "baseline";
@@ -181,16 +176,16 @@ Status Draw(const RequestNode& node, const RequestArguments& arguments) {
     picture.routes.push_back(PictureRoute{bus::WaypointsOf(*node.baseline()),
                                           kBaselineColor, "baseline"});
   }
-  if (HasRoute(node) && node.deployed()->mode == deployed_t::MODE_CANDIDATE) {
+  if (node.HasRoute() && node.deployed()->mode == deployed_t::MODE_CANDIDATE) {
     picture.routes.push_back(PictureRoute{bus::WaypointsOf(*node.deployed()),
                                           kCandidateColor, "deployed"});
   }
   return WritePicture(node.map().map()->map, picture, arguments.picture);
 }
 
-int FailRequest(const std::string& message) {
+int FailRequest(const std::string& message, int exit_code = kCouldNot) {
   std::cerr << "terra request: " << message << "\n";
-  return 1;
+  return exit_code;
 }
 
 // Why there is no route, in a sentence.
@@ -216,7 +211,7 @@ std::string Explain(const RequestNode& node) {
 
 int Ask(RequestArguments& arguments) {
   const Status completed = arguments.bus.Complete();
-  if (!completed) return FailRequest(completed.error().message);
+  if (!completed) return FailRequest(completed.error().message, kWrongUsage);
   RequestPlan plan;
   plan.request_id = bus::RandomId();
   plan.start = arguments.start;
@@ -233,7 +228,7 @@ int Ask(RequestArguments& arguments) {
   }
   const bus::StopSignal stop;
   const Result<bus::ChannelNames> channels = arguments.bus.Channels();
-  if (!channels) return FailRequest(channels.error().message);
+  if (!channels) return FailRequest(channels.error().message, kWrongUsage);
   bus::Inbox inbox;
   Result<std::unique_ptr<bus::Bus>> opened =
       bus::Bus::Open(arguments.bus.lcm_url, *channels);
@@ -251,7 +246,7 @@ int Ask(RequestArguments& arguments) {
                                    nlohmann::json::error_handler_t::replace)
               << "\n";
   }
-  if (!HasRoute(node)) return FailRequest(Explain(node));
+  if (!node.HasRoute()) return FailRequest(Explain(node));
   if (!arguments.json) PrintText(node);
   if (!arguments.picture.empty()) {
     const Status drawn = Draw(node, arguments);

@@ -171,8 +171,8 @@ Result<MethodChoice> FindDeterministicMethod(std::string_view method,
   }
   return Error{ErrorCode::kNotFound,
                advisor
-                   ? "no backend '" + std::string(backend) +
-                         "' without a model; there are " + Join(RefinerNames())
+                   ? "advisor needs a --backend, not '" + std::string(backend) +
+                         "'; without a model there are " + Join(RefinerNames())
                    : "no method '" + std::string(method) +
                          "'; there are advisor, " + Join(PlainMethodNames())};
 }

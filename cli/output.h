@@ -21,6 +21,10 @@ int Fail(const Error& error, int exit_code = kCouldNot);
 /// A cost for JSON: null instead of infinity, which JSON does not have.
 nlohmann::json JsonCost(double cost);
 
+/// How much of the baseline's cost a route saves, in percent; 0 where there is
+/// nothing to compare with (a baseline of cost 0, or none).
+double SavingPercent(double baseline_cost, double cost);
+
 /// As printf; at most 511 characters.
 [[gnu::format(printf, 1, 2)]] std::string Printed(const char* format, ...);
 

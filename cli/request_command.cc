@@ -141,13 +141,13 @@ void PrintText(const RequestNode& node) {
   std::printf("baseline   %10.3f   %s, %.2f ms after the request\n",
               deployed.baseline_cost, node.baseline()->planner.c_str(),
               node.baseline_ms().value_or(0));
-  const double saving = deployed.baseline_cost - deployed.deployed_cost;
   std::printf(
       "deployed   %10.3f   %s%s\n", deployed.deployed_cost,
       deployed.source.c_str(),
       deployed.mode == deployed_t::MODE_CANDIDATE ? "'s route" : "'s baseline");
-  std::printf("saving     %10.3f   %.2f %%\n", saving,
-              100 * saving / deployed.baseline_cost);
+  std::printf("saving     %10.3f   %.2f %%\n",
+              deployed.baseline_cost - deployed.deployed_cost,
+              SavingPercent(deployed.baseline_cost, deployed.deployed_cost));
   std::printf("latency    baseline deployed after %.2f ms",
               node.deployed_ms().value_or(0));
   if (node.refined_ms()) {

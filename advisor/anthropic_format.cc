@@ -79,6 +79,26 @@ class AnthropicFormat : public WireFormat {
     return result;
   }
 
+  json JoinEvents(const std::vector<json>& events) const override {
+    json reply = json::object();
+    json usage = json::object();
+    std::string text;
+    for (const json& event : events) {
+      const json& message = MemberOf(event, "message");
+      TakeOver(reply, message);
+      TakeOver(usage, MemberOf(message, "usage"));
+      TakeOver(usage, MemberOf(event, "usage"));
+      text += TextOr(MemberOf(event, "content_block"), "text");
+      const json& delta = MemberOf(event, "delta");
+      if (TextOr(event, "type") == "message_delta") TakeOver(reply, delta);
+      if (TextOr(delta, "type") == "text_delta") text += TextOr(delta, "text");
+    }
+    if (TextOr(reply, "stop_reason").empty()) return nullptr;
+    reply["usage"] = usage;
+    reply["content"] = {{{"type", "text"}, {"text", text}}};
+    return reply;
+  }
+
   void ReadErrorJson(const json& error, WireError& result) const override {
     const std::string code = TextOr(MemberOf(error, "details"), "error_code");
     result.final = code == "enforced_spend_limit_reached" ||

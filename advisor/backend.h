@@ -64,6 +64,8 @@ class Backend {
   virtual std::string method() const = 0;  ///< "refiner", "advisor", ...
   virtual AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) = 0;
   virtual BackendFigures figures() const { return {}; }
+  /// What has to be said once, at the start; empty = nothing.
+  virtual std::string notice() const { return ""; }
   /// How long an answer takes, before the first one has come: a moving robot is
   /// given a proposal from so far ahead.
   virtual double usual_seconds() const { return 0.5; }

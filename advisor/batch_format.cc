@@ -127,7 +127,10 @@ Result<BatchResult> ReadBatchResult(const WireFormat& format,
   const std::string_view provider = format.provider();
   TERRA_REQUIRE(FindBatchForm(provider) != nullptr);
   try {
-    const json line = json::parse(text);
+    const json line = ParsedOutside(text);
+    if (line.is_discarded()) {
+      return Error{ErrorCode::kInvalid, "no JSON in a line of a results file"};
+    }
     BatchResult result;
     result.id = line.at(IdField(provider)).get<std::string>();
     result.reply = provider == "openai"      ? OpenAiReply(format, line)

@@ -86,6 +86,28 @@ class ChatFormat : public WireFormat {
     return result;
   }
 
+  json JoinEvents(const std::vector<json>& events) const override {
+    json reply = json::object();
+    std::string text;
+    std::string refusal;
+    json finish;
+    for (const json& event : events) {
+      TakeOver(reply, event);
+      const json& choices = MemberOf(event, "choices");
+      if (!choices.is_array() || choices.empty()) continue;
+      const json& delta = MemberOf(choices.front(), "delta");
+      text += TextOr(delta, "content");
+      refusal += TextOr(delta, "refusal");
+      const json& reason = MemberOf(choices.front(), "finish_reason");
+      if (!reason.is_null()) finish = reason;
+    }
+    if (finish.is_null()) return nullptr;
+    json message = {{"role", "assistant"}, {"content", text}};
+    if (!refusal.empty()) message["refusal"] = refusal;
+    reply["choices"] = {{{"message", message}, {"finish_reason", finish}}};
+    return reply;
+  }
+
   void ReadErrorJson(const json& error, WireError& result) const override {
     result.final = TextOr(error, "code") == "insufficient_quota";
   }

@@ -30,7 +30,11 @@ class GeminiFormat : public WireFormat {
   std::string_view key_variable() const override { return "GEMINI_API_KEY"; }
 
   std::string Path(const GenerationSettings& settings) const override {
-    return "/v1beta/models/" + settings.model + ":generateContent";
+    // Models may be named as the provider lists them: "models/NAME".
+    constexpr std::string_view kPrefix = "models/";
+    std::string_view model = settings.model;
+    if (model.starts_with(kPrefix)) model.remove_prefix(kPrefix.size());
+    return "/v1beta/models/" + std::string(model) + ":generateContent";
   }
 
   HeaderList Headers(const GenerationSettings&,
@@ -76,10 +80,7 @@ class GeminiFormat : public WireFormat {
       return result;
     }
     const json& candidate = candidates.front();
-    for (const json& part : MemberOf(MemberOf(candidate, "content"), "parts")) {
-      if (MemberOf(part, "thought") != true)
-        result.text += TextOr(part, "text");
-    }
+    result.text = AnswerText(candidate);
     const std::string finish = Upper(TextOr(candidate, "finishReason", "STOP"));
     if (finish == "STOP") {
       result.status = ReplyStatus::kAnswered;
@@ -91,6 +92,26 @@ class GeminiFormat : public WireFormat {
       result.error = finish;
     }
     return result;
+  }
+
+  json JoinEvents(const std::vector<json>& events) const override {
+    json reply = json::object();
+    json candidate = json::object();
+    std::string text;
+    for (const json& event : events) {
+      TakeOver(reply, event);
+      const json& candidates = MemberOf(event, "candidates");
+      if (!candidates.is_array() || candidates.empty()) continue;
+      TakeOver(candidate, candidates.front());
+      text += AnswerText(candidates.front());
+    }
+    if (candidate.contains("finishReason")) {
+      candidate["content"] = {{"parts", json::array({{{"text", text}}})}};
+      reply["candidates"] = json::array({candidate});
+      return reply;
+    }
+    const bool blocked = candidate.empty() && reply.contains("promptFeedback");
+    return blocked ? reply : json();
   }
 
   void ReadErrorJson(const json& error, WireError& result) const override {
@@ -109,6 +130,15 @@ class GeminiFormat : public WireFormat {
   }
 
  private:
+  /// What the model says in the parts; what it thought is not the answer.
+  static std::string AnswerText(const json& candidate) {
+    std::string text;
+    for (const json& part : MemberOf(MemberOf(candidate, "content"), "parts")) {
+      if (MemberOf(part, "thought") != true) text += TextOr(part, "text");
+    }
+    return text;
+  }
+
   /// "22s", "1.5s".
   static std::optional<double> Seconds(const std::string& text) {
     double seconds = 0;

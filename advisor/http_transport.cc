@@ -112,6 +112,16 @@ TransportFault FaultOf(CURLcode code) {
   }
 }
 
+/// A line break in a value would begin a header of its own.
+bool HasControlCharacter(const HeaderList& headers) {
+  const auto bad = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+  };
+  return std::any_of(headers.begin(), headers.end(), [&](const auto& header) {
+    return std::any_of(header.second.begin(), header.second.end(), bad);
+  });
+}
+
 List HeadersOf(const HttpRequest& request) {
   curl_slist* list =
       curl_slist_append(nullptr, "content-type: application/json");
@@ -184,6 +194,11 @@ HttpReply HttpTransport::Post(const HttpRequest& request,
   if (const auto checked = CheckBaseUrl(request.url); !checked) {
     reply.fault = TransportFault::kRefused;
     reply.fault_text = checked.error().message;
+    return reply;
+  }
+  if (HasControlCharacter(request.headers)) {
+    reply.fault = TransportFault::kRefused;
+    reply.fault_text = "a header (key, version) holds a control character";
     return reply;
   }
   CURLM* multi = state_->multi.get();

@@ -38,7 +38,8 @@ struct HttpReply {
 /// Sends POST requests over HTTP. The only place that knows the HTTP library.
 ///
 /// TLS certificates are verified; redirects are never followed; a reply larger
-/// than allowed is cut off at once.
+/// than allowed is cut off at once; headers with control characters are not
+/// sent.
 /// THREADING: Post works in the calling thread alone, with one request at a
 /// time; a stop request from any thread wakes it at once. Connections are kept
 /// open between calls.

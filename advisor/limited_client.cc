@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "advisor/interruptible_wait.h"
@@ -13,6 +14,18 @@ using Clock = std::chrono::steady_clock;
 
 double NowSeconds() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+/// For people, beside the word that programs read.
+std::string_view LimitText(NoAnswer reason) {
+  switch (reason) {
+    case NoAnswer::kRateLimit:
+      return "--calls-per-minute is reached";
+    case NoAnswer::kSpendLimit:
+      return "--spend-per-hour is reached";
+    default:
+      return "calls pause after --breaker-failures in succession";
+  }
 }
 
 }  // namespace
@@ -51,7 +64,8 @@ LlmReply LimitedClient::Ask(const LlmRequest& request, std::stop_token stop) {
     }
     gate_.Ended(reply, NowSeconds());
   } else if (reply.reason != NoAnswer::kCancelled) {
-    reply.error = "own limit; the next call may go in " +
+    reply.error = std::string(LimitText(gate.reason)) +
+                  "; the next call may go in " +
                   std::to_string(std::lround(std::ceil(gate.wait_s))) + " s";
   }
   const double now = NowSeconds();

@@ -96,6 +96,17 @@ std::string LlmBackend::method() const {
   return std::string(MethodName(method_.method));
 }
 
+bool LlmBackend::simulated() const {
+  return service_.client->identity().endpoint_class == "loopback";
+}
+
+std::string LlmBackend::notice() const {
+  return simulated() ? "SIMULATED: the answers are those of a program on this "
+                       "machine, not of a model (--real-model says that it "
+                       "runs one)"
+                     : "";
+}
+
 bool LlmBackend::WorthAsking(const AdviceTask& task) const {
   if (min_gain_percent_ <= 0) return true;
   const double enough = task.baseline_cost * (1 - min_gain_percent_ / 100);
@@ -137,7 +148,7 @@ void LlmBackend::Keep(const MethodOutcome& outcome, const LlmReply& reply,
   answer.form = outcome.form;
   answer.model =
       reply.model.empty() ? service_.client->identity().model : reply.model;
-  answer.simulated = service_.client->identity().endpoint_class == "loopback";
+  answer.simulated = simulated();
   answer.answer_text = reply.text;
   answer.tokens_in = reply.usage.tokens_in;
   answer.tokens_out = reply.usage.tokens_out;

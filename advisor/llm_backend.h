@@ -41,10 +41,12 @@ class LlmBackend : public Backend {
   std::string method() const override;
   AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) override;
   BackendFigures figures() const override;
+  std::string notice() const override;
   /// The paper's online models took up to 22 s in 95 of 100 cases.
   double usual_seconds() const override { return 25; }
 
  private:
+  bool simulated() const;
   bool WorthAsking(const AdviceTask& task) const;
   void Keep(const MethodOutcome& outcome, const LlmReply& reply,
             AdviceAnswer& answer) const;

@@ -79,7 +79,7 @@ struct LlmReply {
   std::string response_id;  ///< The provider's.
   LlmUsage usage;
   std::optional<double> spend_usd;  ///< Unknown without a price.
-  std::string body;                 ///< The reply as it came, for recordings.
+  std::string body;  ///< The reply as it came (a stream: joined), to be kept.
 
   int tries = 0;       ///< Requests sent.
   double t_llm_s = 0;  ///< First byte sent to last received, waits included.

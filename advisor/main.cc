@@ -3,10 +3,12 @@
 // and CONFIG on the deployed one; exits when asked to (SIGINT, SIGTERM) or when
 // it has no bus.
 #include <memory>
+#include <string>
 
 #include "advisor/advisor_node.h"
 #include "advisor/advisor_options.h"
 #include "bus/bus.h"
+#include "bus/log.h"
 #include "bus/process.h"
 
 int main(int argc, char** argv) {
@@ -27,6 +29,9 @@ int main(int argc, char** argv) {
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
     auto backend = terra::advisor::MakeBackend(options);
     if (!backend) return backend.error();
+    if (const std::string notice = (*backend)->notice(); !notice.empty()) {
+      terra::bus::LogWarning(notice);
+    }
     auto opened =
         terra::bus::Bus::Open(context.bus.advice_url, context.channels);
     if (!opened) return opened.error();

@@ -80,6 +80,20 @@ class OpenAiFormat : public WireFormat {
     return result;
   }
 
+  /// Its end repeats the whole response.
+  json JoinEvents(const std::vector<json>& events) const override {
+    for (const json& event : events) {
+      if (TextOr(event, "type") == "error") return {{"error", event}};
+      const json& response = MemberOf(event, "response");
+      const std::string status = TextOr(response, "status");
+      if (response.is_object() && status != "in_progress" &&
+          status != "queued") {
+        return response;
+      }
+    }
+    return nullptr;
+  }
+
   void ReadErrorJson(const json& error, WireError& result) const override {
     result.final = TextOr(error, "code") == "insufficient_quota" ||
                    TextOr(error, "type") == "insufficient_quota";

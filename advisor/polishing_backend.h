@@ -23,6 +23,7 @@ class PolishingBackend : public Backend {
   std::string method() const override { return inner_->method(); }
   AdviceAnswer Advise(const AdviceTask& task, std::stop_token stop) override;
   BackendFigures figures() const override { return inner_->figures(); }
+  std::string notice() const override { return inner_->notice(); }
   double usual_seconds() const override { return inner_->usual_seconds(); }
 
  private:

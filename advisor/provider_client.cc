@@ -7,12 +7,12 @@
 #include <random>
 #include <utility>
 
-#include <nlohmann/json.hpp>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
 #include "advisor/endpoint_url.h"
 #include "advisor/interruptible_wait.h"
+#include "advisor/wire_json.h"
 
 namespace terra::advisor {
 namespace {
@@ -201,7 +201,13 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
                   OnOneLine(WithoutKey(outcome.error.message));
     return outcome;
   }
-  WireReply wire = format_->ReadReply(http.body);
+  auto whole = format_->Whole(std::move(http.body));
+  if (!whole) {
+    reply.error = "the event stream ends before its answer";
+    outcome.reply_failed = true;
+    return outcome;
+  }
+  WireReply wire = format_->ReadReply(*whole);
   outcome.reply_failed = wire.transient;
   reply.status = wire.status;
   reply.text = WithoutKey(std::move(wire.text));
@@ -209,7 +215,7 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
   reply.model = OnOneLine(WithoutKey(std::move(wire.model)));
   reply.response_id = WithoutKey(std::move(wire.response_id));
   reply.usage = wire.usage;
-  reply.body = BodyWithoutKey(std::move(http.body));
+  reply.body = BodyWithoutKey(*std::move(whole));
   if (reply.came()) {
     reply.reason = NoAnswer::kNone;
   }
@@ -240,7 +246,7 @@ std::string ProviderClient::WithoutKey(std::string text) const {
 std::string ProviderClient::BodyWithoutKey(std::string body) const {
   body = WithoutKey(std::move(body));
   if (body.find('\\') == std::string::npos) return body;
-  const auto json = nlohmann::json::parse(body, nullptr, false);
+  const auto json = ParsedOutside(body);
   if (json.is_discarded()) return body;
   std::string plain =
       json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -93,8 +93,10 @@ LlmReply ReplayClient::Ask(const LlmRequest& request, std::stop_token) {
   }
   LlmReply none;
   none.reason = NoAnswer::kNotRecorded;
-  none.error = "the recording has no request " + hash + ", repeat " +
-               std::to_string(request.repeat);
+  none.error =
+      "the recording has no answer to this question; another map, "
+      "method, model or setting? Request " +
+      hash + ", repeat " + std::to_string(request.repeat);
   return none;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "advisor/encoding.h"
+#include "advisor/wire_json.h"
 
 namespace terra::advisor {
 namespace {
@@ -49,7 +50,7 @@ std::optional<WireQuestion> ReadWireQuestion(std::string_view path,
   question.provider = ProviderOf(path);
   if (question.provider.empty()) return std::nullopt;
   try {
-    const json request = json::parse(body);
+    const json request = ParsedOutside(body);
     const bool gemini = question.provider == "gemini";
     const json& turns =
         request.at(gemini                          ? "contents"

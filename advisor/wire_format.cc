@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "advisor/event_stream.h"
 #include "advisor/wire_json.h"
 
 namespace terra::advisor {
@@ -12,12 +13,6 @@ using nlohmann::json;
 
 /// Texts from outside are quoted up to this length.
 constexpr std::size_t kMaxMessage = 300;
-
-/// Parses without exceptions; a deep nesting would cost the parser memory in
-/// proportion to the bytes only, which are capped.
-json Parsed(std::string_view body) {
-  return json::parse(body.begin(), body.end(), nullptr, false);
-}
 
 /// What a server that is no provider's may write instead of the provider's
 /// error: a message of its own, or a line of plain text. Not a page of HTML.
@@ -42,13 +37,24 @@ bool MayPass(const json& error) {
 
 }  // namespace
 
+std::optional<std::string> WireFormat::Whole(std::string body) const {
+  if (!IsEventStream(body)) return body;
+  const auto events = ReadEventStream(body);
+  if (!events) return std::nullopt;
+  const auto failed =
+      std::find_if(events->begin(), events->end(), [](const json& event) {
+        return !MemberOf(event, "error").is_null();
+      });
+  const json whole = failed != events->end() ? *failed : JoinEvents(*events);
+  if (whole.is_null()) return std::nullopt;
+  return whole.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 WireReply WireFormat::ReadReply(std::string_view body) const {
   WireReply bad;
-  const json reply = Parsed(body);
+  const json reply = ParsedOutside(body);
   if (!reply.is_object()) {
-    const bool stream = body.starts_with("data:") || body.starts_with("event:");
-    bad.error = stream ? "the reply is an event stream, not asked for"
-                       : "the reply is no JSON object";
+    bad.error = "the reply is no JSON object";
     return bad;
   }
   const json& error = MemberOf(reply, "error");
@@ -71,7 +77,7 @@ WireReply WireFormat::ReadReply(std::string_view body) const {
 
 WireError WireFormat::ReadError(std::string_view body) const {
   WireError result;
-  json reply = Parsed(body);
+  json reply = ParsedOutside(body);
   if (reply.is_array() && reply.size() == 1) reply = json(reply[0]);
   const json& error = MemberOf(reply, "error");
   result.message =

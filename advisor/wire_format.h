@@ -65,6 +65,11 @@ class WireFormat {
   virtual HeaderList Headers(const GenerationSettings& settings,
                              const std::string& key) const = 0;
 
+  /// A server may stream what nobody asked it to stream. Returns the reply as
+  /// it would have come at once: an event stream joined, any other body as it
+  /// is; nothing where a stream ends before its answer. Reads any bytes.
+  std::optional<std::string> Whole(std::string body) const;
+
   /// Reads any bytes; kNoAnswer with an error where they are not in this form.
   WireReply ReadReply(std::string_view body) const;
 
@@ -74,6 +79,9 @@ class WireFormat {
  protected:
   /// May throw nlohmann::json::exception for a wrong form.
   virtual WireReply ReadReplyJson(const nlohmann::json& reply) const = 0;
+  /// The reply whose events these are; null without the answer's end.
+  virtual nlohmann::json JoinEvents(
+      const std::vector<nlohmann::json>& events) const = 0;
   /// Adds what is the provider's own; `error` is the object of that name.
   virtual void ReadErrorJson(const nlohmann::json& error,
                              WireError& result) const = 0;

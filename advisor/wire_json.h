@@ -14,6 +14,35 @@
 
 namespace terra::advisor {
 
+/// Are brackets nested deeper than in any reply or request of the providers?
+inline bool IsNestedTooDeeply(std::string_view text) {
+  constexpr int kDeepest = 64;
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') in_string = !in_string;
+    if (in_string) {
+      i += c == '\\' ? 1 : 0;
+      continue;
+    }
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return true;
+  }
+  return false;
+}
+
+/// Reads JSON from outside without throwing: discarded where it is none, or
+/// nested so deeply that copying or writing it, which recurse, would exhaust
+/// the stack.
+inline nlohmann::json ParsedOutside(std::string_view text) {
+  if (IsNestedTooDeeply(text)) {
+    return nlohmann::json(nlohmann::json::value_t::discarded);
+  }
+  return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+}
+
 /// Replies leave out fields, or set them to null: these read what is there.
 inline std::string TextOr(const nlohmann::json& object, const char* key,
                           std::string otherwise = "") {
@@ -40,6 +69,15 @@ inline const nlohmann::json& MemberOf(const nlohmann::json& object,
   if (!object.is_object()) return kNull;
   const auto at = object.find(key);
   return at == object.end() ? kNull : *at;
+}
+
+/// Takes over the members that say something: a later event of a stream may
+/// leave out, or set to null, what an earlier one said.
+inline void TakeOver(nlohmann::json& object, const nlohmann::json& later) {
+  if (!later.is_object()) return;
+  for (const auto& [key, value] : later.items()) {
+    if (!value.is_null()) object[key] = value;
+  }
 }
 
 /// The member, which has to be a whole number that Int holds: `get<Int>()`

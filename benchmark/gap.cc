@@ -1,6 +1,8 @@
 #include "benchmark/gap.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -8,12 +10,13 @@
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
 #include "terrain/files/csv.h"
-#include "terrain/files/whole_file.h"
 #include "terrain/native_search.h"
 #include "terrain/require.h"
 #include "verifier/verify.h"
 
 namespace terra::benchmark {
+
+namespace fs = std::filesystem;
 
 CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
                    const GapOptions& options) {
@@ -97,6 +100,10 @@ Status WriteGaps(const std::vector<DatasetCase>& cases,
                  const std::vector<CaseGap>& gaps, const GapOptions& options,
                  const std::string& path) {
   TERRA_REQUIRE(cases.size() == gaps.size());
+  // A part of the text at a time: there may be a million cases.
+  constexpr std::size_t kPartBytes = std::size_t{1} << 16;
+  const std::string unfinished = path + ".part";
+  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
   std::string text =
       CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"});
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -105,8 +112,16 @@ Status WriteGaps(const std::vector<DatasetCase>& cases,
                        FormatNumber(gaps[i].baseline_costs[k]),
                        FormatNumber(gaps[i].oracle_cost)});
     }
+    if (text.size() < kPartBytes) continue;
+    file << text;
+    text.clear();
   }
-  return WriteWholeFile(path, text);
+  file << text;
+  file.close();
+  std::error_code failed;
+  if (file) fs::rename(unfinished, path, failed);
+  if (file && !failed) return Done{};
+  return Error{ErrorCode::kUnavailable, path + ": cannot be written"};
 }
 
 }  // namespace terra::benchmark

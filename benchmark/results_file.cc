@@ -84,28 +84,25 @@ Status RewriteRows(const std::string& path,
 
 }  // namespace
 
-ResultsFile::ResultsFile(std::string path, std::vector<std::string> case_ids,
-                         int repeats, ResultColumns columns)
+ResultsFile::ResultsFile(std::string path, const IdIndex& cases, int repeats,
+                         ResultColumns columns)
     : path_(std::move(path)),
-      case_ids_(std::move(case_ids)),
+      cases_(cases),
       repeats_(repeats),
       columns_(columns),
-      done_(case_ids_.size() * static_cast<std::size_t>(repeats)) {
-  for (std::size_t i = 0; i < case_ids_.size(); ++i) {
-    index_of_.emplace(case_ids_[i], i);
-  }
-}
+      done_(cases.size() * static_cast<std::size_t>(repeats)) {}
 
 ResultsFile::~ResultsFile() {
   if (file_ >= 0) ::close(file_);
   if (lock_ >= 0) ::close(lock_);
 }
 
-Result<std::unique_ptr<ResultsFile>> ResultsFile::Open(
-    const std::string& path, const std::vector<std::string>& case_ids,
-    int repeats, ResultColumns columns) {
+Result<std::unique_ptr<ResultsFile>> ResultsFile::Open(const std::string& path,
+                                                       const IdIndex& cases,
+                                                       int repeats,
+                                                       ResultColumns columns) {
   std::unique_ptr<ResultsFile> file(
-      new ResultsFile(path, case_ids, repeats, columns));
+      new ResultsFile(path, cases, repeats, columns));
   const Status locked = file->Lock();
   if (!locked.ok()) return locked.error();
   const Status recovered = file->Recover();
@@ -126,14 +123,13 @@ Status ResultsFile::Lock() {
 }
 
 Result<std::size_t> ResultsFile::SlotOf(const CaseResult& result) const {
-  const auto found = index_of_.find(result.case_id);
-  if (found == index_of_.end() || result.repeat < 0 ||
-      result.repeat >= repeats_) {
+  const std::optional<std::size_t> found = cases_.Find(result.case_id);
+  if (!found || result.repeat < 0 || result.repeat >= repeats_) {
     return Error{ErrorCode::kInvalid,
                  path_ + ": case '" + result.case_id + "' repeat " +
                      std::to_string(result.repeat) + " is not of this run"};
   }
-  return found->second * static_cast<std::size_t>(repeats_) +
+  return *found * static_cast<std::size_t>(repeats_) +
          static_cast<std::size_t>(result.repeat);
 }
 

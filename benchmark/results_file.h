@@ -4,10 +4,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "benchmark/case_result.h"
+#include "terrain/files/id_index.h"
 #include "terrain/result.h"
 
 namespace terra::benchmark {
@@ -19,11 +19,11 @@ class ResultsFile {
  public:
   /// Opens or makes the file and locks it against other processes. A torn last
   /// line is cut off, rows without an answer are dropped.
-  /// `case_ids`: the cases in the order of the finished file.
+  /// `cases`: in the order of the finished file; must outlive it.
   /// Errors: not writable, locked, not a results.csv, a row of another case.
   static Result<std::unique_ptr<ResultsFile>> Open(
-      const std::string& path, const std::vector<std::string>& case_ids,
-      int repeats, ResultColumns columns = ResultColumns::kUsual);
+      const std::string& path, const IdIndex& cases, int repeats,
+      ResultColumns columns = ResultColumns::kUsual);
 
   ~ResultsFile();
   ResultsFile(const ResultsFile&) = delete;
@@ -45,7 +45,7 @@ class ResultsFile {
   };
 
  private:
-  ResultsFile(std::string path, std::vector<std::string> case_ids, int repeats,
+  ResultsFile(std::string path, const IdIndex& cases, int repeats,
               ResultColumns columns);
 
   Status Lock();
@@ -56,10 +56,9 @@ class ResultsFile {
   Result<std::size_t> SlotOf(const CaseResult& result) const;
 
   const std::string path_;
-  const std::vector<std::string> case_ids_;
+  const IdIndex& cases_;
   const int repeats_;
   const ResultColumns columns_;
-  std::unordered_map<std::string, std::size_t> index_of_;
   std::vector<bool> done_;  ///< By slot: case index x repeats + repeat.
   std::int64_t num_done_ = 0;
   int lock_ = -1;

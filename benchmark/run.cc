@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -63,7 +64,7 @@ Result<RunDescription> BeginDescription(const MethodRun& run,
   return description;
 }
 
-Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
+Result<OpenRun> Open(const MethodRun& run, const IdIndex& cases, int repeats,
                      RunDescription description) {
   std::error_code failed;
   fs::create_directories(run.folder, failed);
@@ -73,8 +74,7 @@ Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
   OpenRun open;
   open.run = &run;
   auto results = ResultsFile::Open(
-      (fs::path(run.folder) / "results.csv").string(), options.cases,
-      options.repeats,
+      (fs::path(run.folder) / "results.csv").string(), cases, repeats,
       run.choice.info.several_candidates ? ResultColumns::kWithCandidates
                                          : ResultColumns::kUsual);
   if (!results.ok()) return results.error();
@@ -90,13 +90,10 @@ Result<OpenRun> Open(const MethodRun& run, const RunOptions& options,
 // Runs what is left of the cases, several at a time.
 class Runner {
  public:
-  Runner(const Dataset& dataset, const RunOptions& options,
-         std::vector<OpenRun>& runs)
-      : dataset_(dataset), options_(options), runs_(runs) {
-    for (std::size_t i = 0; i < dataset.cases.size(); ++i) {
-      place_of_.emplace(dataset.cases[i].case_id, i);
-    }
-  }
+  /// `cases`: those of the run, each with its place in the dataset.
+  Runner(const Dataset& dataset, const std::vector<std::uint32_t>& cases,
+         const RunOptions& options, std::vector<OpenRun>& runs)
+      : dataset_(dataset), cases_(cases), options_(options), runs_(runs) {}
 
   Status Run() {
     const std::vector<std::size_t> left = CasesLeft();
@@ -122,7 +119,7 @@ class Runner {
 
   std::size_t NumOfShard() const {
     std::size_t n = 0;
-    for (std::size_t i = 0; i < options_.cases.size(); ++i) n += InShard(i);
+    for (std::size_t i = 0; i < cases_.size(); ++i) n += InShard(i);
     return n;
   }
 
@@ -135,7 +132,7 @@ class Runner {
 
   std::vector<std::size_t> CasesLeft() const {
     std::vector<std::size_t> left;
-    for (std::size_t i = 0; i < options_.cases.size(); ++i) {
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
       const bool done =
           std::all_of(runs_.begin(), runs_.end(), [&](const OpenRun& run) {
             return IsDone(run, i);
@@ -146,7 +143,7 @@ class Runner {
   }
 
   void RunCase(std::size_t index) {
-    const DatasetCase& c = dataset_.cases[place_of_.at(options_.cases[index])];
+    const DatasetCase& c = dataset_.cases[cases_[index]];
     const Result<CaseWork> work = BeginCase(dataset_, c, options_);
     if (!work.ok()) return Fail(work.error());
     Result<Methods> methods = TakeMethods();
@@ -211,13 +208,44 @@ class Runner {
   }
 
   const Dataset& dataset_;
+  const std::vector<std::uint32_t>& cases_;
   const RunOptions& options_;
   std::vector<OpenRun>& runs_;
-  std::map<std::string, std::size_t> place_of_;
   std::mutex mutex_;
   std::vector<Methods> idle_;
   std::optional<Error> failure_;
 };
+
+// The places of these cases in the dataset; of none, of all.
+Result<std::vector<std::uint32_t>> PlacesOf(
+    const Dataset& dataset, const std::vector<std::string>& ids) {
+  std::vector<std::uint32_t> places(ids.size());
+  if (ids.empty()) {
+    places.resize(dataset.cases.size());
+    std::iota(places.begin(), places.end(), 0U);
+    return places;
+  }
+  const IdIndex index = IndexOf(dataset.cases);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::optional<std::size_t> place = index.Find(ids[i]);
+    if (!place) {
+      return Error{ErrorCode::kInvalid,
+                   dataset.folder + ": has no case '" + ids[i] + "'"};
+    }
+    places[i] = static_cast<std::uint32_t>(*place);
+  }
+  return places;
+}
+
+IdIndex CasesAt(const Dataset& dataset,
+                const std::vector<std::uint32_t>& places) {
+  std::vector<const std::string*> ids;
+  ids.reserve(places.size());
+  for (const std::uint32_t place : places) {
+    ids.push_back(&dataset.cases[place].case_id);
+  }
+  return IdIndex(std::move(ids));
+}
 
 Status Finish(OpenRun& open) {
   const Status sorted = open.results->Finish();
@@ -247,22 +275,20 @@ Result<std::string> DatasetDigest(const Dataset& dataset) {
 
 Status RunMethods(const Dataset& dataset, const RunOptions& options,
                   const std::vector<MethodRun>& runs, const RunOrigin& origin) {
-  RunOptions complete = options;
-  if (complete.cases.empty()) {
-    for (const DatasetCase& c : dataset.cases) {
-      complete.cases.push_back(c.case_id);
-    }
-  }
+  const auto places = PlacesOf(dataset, options.cases);
+  if (!places.ok()) return places.error();
+  const IdIndex cases = CasesAt(dataset, *places);
   const Result<std::string> digest = DatasetDigest(dataset);
   if (!digest.ok()) return digest.error();
   std::vector<OpenRun> open;
   for (const MethodRun& run : runs) {
-    Result<OpenRun> opened = Open(
-        run, complete, DescribeRun(dataset, complete, run, origin, *digest));
+    Result<OpenRun> opened =
+        Open(run, cases, options.repeats,
+             DescribeRun(dataset, cases, options, run, origin, *digest));
     if (!opened.ok()) return opened.error();
     open.push_back(*std::move(opened));
   }
-  const Status ran = Runner(dataset, complete, open).Run();
+  const Status ran = Runner(dataset, *places, options, open).Run();
   if (!ran.ok()) return ran.error();
   for (OpenRun& run : open) {
     const Status finished = Finish(run);

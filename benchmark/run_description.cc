@@ -40,9 +40,9 @@ std::string MachineText() {
          system.sysname + " " + system.release;
 }
 
-std::string CaseListDigest(const std::vector<std::string>& ids) {
+std::string CaseListDigest(const IdIndex& cases) {
   std::string text;
-  for (const std::string& id : ids) text += id + "\n";
+  for (std::size_t i = 0; i < cases.size(); ++i) text += cases[i] + "\n";
   return advisor::Sha256Hex(text);
 }
 
@@ -152,8 +152,9 @@ std::string UtcNow() {
   return text.data();
 }
 
-RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
-                           const MethodRun& run, const RunOrigin& origin,
+RunDescription DescribeRun(const Dataset& dataset, const IdIndex& cases,
+                           const RunOptions& options, const MethodRun& run,
+                           const RunOrigin& origin,
                            const std::string& dataset_digest) {
   RunDescription d;
   const MethodInfo& info = run.choice.info;
@@ -166,8 +167,8 @@ RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
   d.dataset_name = dataset.name;
   d.dataset_version = dataset.version;
   d.dataset_digest = dataset_digest;
-  d.case_list_digest = CaseListDigest(options.cases);
-  d.num_cases = static_cast<std::int64_t>(options.cases.size());
+  d.case_list_digest = CaseListDigest(cases);
+  d.num_cases = static_cast<std::int64_t>(cases.size());
   d.stride = options.lattice.stride;
   d.joints = JointsName(options.lattice.joints);
   d.corner_cutting = options.cost_model.corner_cutting;

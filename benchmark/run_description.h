@@ -61,8 +61,10 @@ struct RunDescription {
   bool SameFigures(const RunDescription& other) const;
 };
 
-RunDescription DescribeRun(const Dataset& dataset, const RunOptions& options,
-                           const MethodRun& run, const RunOrigin& origin,
+/// `cases`: those of the run, in order.
+RunDescription DescribeRun(const Dataset& dataset, const IdIndex& cases,
+                           const RunOptions& options, const MethodRun& run,
+                           const RunOrigin& origin,
                            const std::string& dataset_digest);
 
 Status WriteRunDescription(const RunDescription& description,

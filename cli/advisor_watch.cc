@@ -1,10 +1,10 @@
 #include "cli/advisor_watch.h"
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 
 #include "cli/output.h"
+#include "cli/status_counter.h"
 
 namespace terra::cli {
 namespace {
@@ -14,15 +14,6 @@ constexpr std::size_t kMaxAdvisors = 64;
 constexpr std::size_t kLongestName = 63;
 constexpr std::size_t kLongestText = 400;
 constexpr int kEnoughHeartbeats = 3;
-
-std::optional<std::int64_t> CounterOf(const terra_msg::status_t& status,
-                                      std::string_view name) {
-  const auto at =
-      std::find(status.counter_name.begin(), status.counter_name.end(), name);
-  if (at == status.counter_name.end()) return std::nullopt;
-  return status.counter_value.at(
-      static_cast<std::size_t>(at - status.counter_name.begin()));
-}
 
 }  // namespace
 

@@ -31,9 +31,10 @@ Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
   const Result<std::string> file = ReadWholeFile(text, kMaxCaseListBytes);
   if (!file.ok()) return file.error();
   std::vector<std::string> ids;
+  const IdIndex index = IndexOf(dataset.cases);
   std::istringstream lines(*file);
   for (std::string id; lines >> id;) {
-    if (dataset.Find(id) == nullptr) {
+    if (!index.Find(id)) {
       return Error{ErrorCode::kInvalid,
                    text + ": the dataset has no case '" + id + "'"};
     }

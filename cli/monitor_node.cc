@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "cli/output.h"
+#include "cli/status_counter.h"
 #include "verifier/verify.h"
 
 namespace terra::cli {
@@ -37,6 +38,26 @@ const char* ModeName(std::int8_t mode) {
 
 double Seconds(bus::Duration duration) {
   return std::chrono::duration<double>(duration).count();
+}
+
+// What an advisor's calls to a model came to; empty for other processes.
+std::string ModelLine(const status_t& status) {
+  if (!CounterOf(status, "llm_calls")) return "";
+  const auto count = [&status](const char* name) {
+    return static_cast<long long>(CounterOf(status, name).value_or(0));
+  };
+  const auto dollars = [&count](const char* name) {
+    return static_cast<double>(count(name)) / 1e6;
+  };
+  return Printed(
+             "      %lld calls (%lld without answer, %lld skipped), %lld "
+             "running, p50 %lld ms, p95 %lld ms\n",
+             count("llm_calls"), count("llm_no_answer"), count("llm_skipped"),
+             count("queue"), count("llm_p50_ms"), count("llm_p95_ms")) +
+         Printed(
+             "      %lld tokens in, %lld out, $%.4f, in the last hour $%.4f\n",
+             count("tokens_in"), count("tokens_out"),
+             dollars("spend_micro_usd"), dollars("spend_hour_micro_usd"));
 }
 
 }  // namespace
@@ -146,6 +167,7 @@ std::string MonitorNode::ProcessLines(bus::Time now) const {
                     age > kSilent
                         ? Printed("SILENT for %.0f s", Seconds(age)).c_str()
                         : Printable(status.state, 60).c_str());
+    text += ModelLine(status);
     if (!status.last_error.empty()) {
       text += "      last error: " + Printable(status.last_error, 160) + "\n";
     }

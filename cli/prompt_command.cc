@@ -16,7 +16,6 @@
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 #include "terrain/digest.h"
-#include "terrain/files/csv.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::cli {
@@ -103,9 +102,11 @@ int RunPrompt(const PromptArguments& arguments) {
         {"seconds", prepared->seconds}};
     std::cout << json.dump() << "\n";
   } else {
-    std::cout << arguments.out << ": prompt.txt and "
-              << question.request.pictures.size() << " images, prepared in "
-              << Printed("%.1f", 1e3 * prepared->seconds) << " ms\n";
+    const std::size_t images = question.request.pictures.size();
+    std::cout << arguments.out
+              << Printed(": prompt.txt and %zu image%s, prepared in %.1f ms\n",
+                         images, images == 1 ? "" : "s",
+                         1e3 * prepared->seconds);
   }
   return kDone;
 }

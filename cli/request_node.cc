@@ -80,16 +80,23 @@ bool RequestNode::Answered() const {
   return baseline_ && deployed_;
 }
 
+bool RequestNode::advised() const {
+  return refined_ms_.has_value() ||
+         std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& each) {
+           return each.subject == terra_msg::verdict_t::SUBJECT_ADVICE;
+         });
+}
+
 // Nothing more is to be waited for.
 bool RequestNode::Settled() const {
   if (!Answered()) return false;
   if (baseline_->status != baseline_t::STATUS_OK) return true;
-  const bool advised =
+  const bool refused =
       std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& verdict) {
         return verdict.subject == terra_msg::verdict_t::SUBJECT_ADVICE &&
                verdict.code != terra_msg::verdict_t::CODE_ACCEPTED;
       });
-  return refined_ms_.has_value() || advised || advisors_.AllGaveUp();
+  return refined_ms_.has_value() || refused || advisors_.AllGaveUp();
 }
 
 double RequestNode::MillisecondsSinceStart(bus::Time now) const {

@@ -49,6 +49,8 @@ class RequestNode : public bus::Node {
   const std::vector<terra_msg::verdict_t>& verdicts() const {
     return verdicts_;
   }
+  /// Did the gate judge any advice on this request, or deploy it?
+  bool advised() const;
   /// A route is deployed.
   bool HasRoute() const;
   Latency baseline_ms() const { return baseline_ms_; }

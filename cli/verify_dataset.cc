@@ -31,16 +31,18 @@ using WorkByMap = std::map<std::string, std::vector<Work>>;
 Result<WorkByMap> SortByMap(const Dataset& dataset, const CsvTable& routes,
                             const std::string& name) {
   const auto id_column = static_cast<std::size_t>(routes.Column("case_id"));
+  const IdIndex index = IndexOf(dataset.cases);
   WorkByMap work;
   for (std::size_t row = 0; row < routes.rows.size(); ++row) {
     const std::string& id = routes.rows[row].fields[id_column];
-    const DatasetCase* found = dataset.Find(id);
-    if (found == nullptr) {
+    const std::optional<std::size_t> place = index.Find(id);
+    if (!place) {
       return Error{ErrorCode::kInvalid,
                    name + ":" + std::to_string(routes.rows[row].line) +
                        ": the dataset has no case '" + id + "'"};
     }
-    work[found->map].push_back({found, row});
+    const DatasetCase& found = dataset.cases[*place];
+    work[found.map].push_back({&found, row});
   }
   return work;
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -15,6 +17,8 @@ namespace {
 constexpr std::size_t kMaxCsvBytes = std::size_t{1} << 30;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
+using CsvUse = std::function<Status(CsvRow)>;
+
 Error LineError(const std::string& name, int line, const std::string& what) {
   return Error{ErrorCode::kInvalid,
                name + ":" + std::to_string(line) + ": " + what};
@@ -23,10 +27,11 @@ Error LineError(const std::string& name, int line, const std::string& what) {
 // Cuts a text into records; a cursor that counts lines.
 class CsvScanner {
  public:
-  CsvScanner(std::string_view text, const std::string& name)
-      : text_(text), name_(name) {}
+  CsvScanner(std::string_view text, const std::string& name, int line)
+      : text_(text), name_(name), line_(line) {}
 
   bool AtEnd() const { return at_ == text_.size(); }
+  int line() const { return line_; }
 
   Result<CsvRow> Next() {
     CsvRow row;
@@ -87,7 +92,7 @@ class CsvScanner {
   std::string_view text_;
   const std::string& name_;
   std::size_t at_ = 0;
-  int line_ = 1;
+  int line_;
 };
 
 bool IsEmptyLine(const CsvRow& row) {
@@ -105,6 +110,84 @@ Status CheckHeader(const std::vector<std::string>& header,
   return Done{};
 }
 
+// Reads a table that comes in parts, each of whole records.
+class TableReader {
+ public:
+  explicit TableReader(const std::string& name) : name_(name) {}
+
+  Status Take(std::string_view part, const CsvUse& use) {
+    if (line_ == 1 && part.starts_with(kByteOrderMark)) {
+      part.remove_prefix(kByteOrderMark.size());
+    }
+    CsvScanner scanner(part, name_, line_);
+    while (!scanner.AtEnd()) {
+      Result<CsvRow> row = scanner.Next();
+      if (!row.ok()) return row.error();
+      if (IsEmptyLine(*row)) continue;
+      const Status taken = TakeRow(*std::move(row), use);
+      if (!taken.ok()) return taken;
+    }
+    line_ = scanner.line();
+    return Done{};
+  }
+
+  Status Finish() const {
+    if (!header_.empty()) return Done{};
+    return Error{ErrorCode::kInvalid, name_ + ": empty, no header row"};
+  }
+
+ private:
+  Status TakeRow(CsvRow row, const CsvUse& use) {
+    if (header_.empty()) {
+      header_ = row.fields;
+      const Status header = CheckHeader(header_, name_);
+      return header.ok() ? use(std::move(row)) : header;
+    }
+    if (row.fields.size() != header_.size()) {
+      return LineError(name_, row.line,
+                       std::to_string(row.fields.size()) +
+                           " fields where the header has " +
+                           std::to_string(header_.size()) +
+                           " (fields with a comma need quotes)");
+    }
+    return use(std::move(row));
+  }
+
+  const std::string& name_;
+  std::vector<std::string> header_;
+  int line_ = 1;
+};
+
+// Whole records, some at a time: an odd number of quotes so far means that a
+// line break is inside a field.
+bool NextPart(std::ifstream& file, std::string& part) {
+  constexpr std::size_t kPartBytes = std::size_t{1} << 16;
+  part.clear();
+  std::string line;
+  bool inside = false;
+  while ((inside || part.size() < kPartBytes) && std::getline(file, line)) {
+    if (std::count(line.begin(), line.end(), '"') % 2 == 1) inside = !inside;
+    part += line;
+    if (!file.eof()) part += '\n';
+  }
+  return !part.empty();
+}
+
+Status CheckColumns(const CsvTable& table, const std::string& path,
+                    std::initializer_list<std::string_view> columns) {
+  for (const std::string_view column : columns) {
+    if (table.Column(column) >= 0) continue;
+    std::string wanted;
+    for (const std::string_view name : columns) {
+      wanted += (wanted.empty() ? "" : ",") + std::string(name);
+    }
+    return LineError(path, 1,
+                     "no column '" + std::string(column) +
+                         "'; the header must have " + wanted);
+  }
+  return Done{};
+}
+
 }  // namespace
 
 int CsvTable::Column(std::string_view name) const {
@@ -113,33 +196,19 @@ int CsvTable::Column(std::string_view name) const {
 }
 
 Result<CsvTable> ParseCsv(std::string_view text, const std::string& name) {
-  if (text.starts_with(kByteOrderMark)) {
-    text.remove_prefix(kByteOrderMark.size());
-  }
   CsvTable table;
-  CsvScanner scanner(text, name);
-  while (!scanner.AtEnd()) {
-    Result<CsvRow> row = scanner.Next();
-    if (!row.ok()) return row.error();
-    if (IsEmptyLine(*row)) continue;
+  TableReader reader(name);
+  const Status read = reader.Take(text, [&](CsvRow row) -> Status {
     if (table.header.empty()) {
-      table.header = std::move(row->fields);
-      Status header = CheckHeader(table.header, name);
-      if (!header.ok()) return header.error();
-      continue;
+      table.header = std::move(row.fields);
+    } else {
+      table.rows.push_back(std::move(row));
     }
-    if (row->fields.size() != table.header.size()) {
-      return LineError(name, row->line,
-                       std::to_string(row->fields.size()) +
-                           " fields where the header has " +
-                           std::to_string(table.header.size()) +
-                           " (fields with a comma need quotes)");
-    }
-    table.rows.push_back(std::move(*row));
-  }
-  if (table.header.empty()) {
-    return Error{ErrorCode::kInvalid, name + ": empty, no header row"};
-  }
+    return Done{};
+  });
+  if (!read.ok()) return read.error();
+  const Status finished = reader.Finish();
+  if (!finished.ok()) return finished.error();
   return table;
 }
 
@@ -149,18 +218,30 @@ Result<CsvTable> ReadCsv(const std::string& path,
   if (!text.ok()) return text.error();
   Result<CsvTable> table = ParseCsv(*text, path);
   if (!table.ok()) return table.error();
-  for (const std::string_view column : columns) {
-    if (table->Column(column) < 0) {
-      std::string wanted;
-      for (const std::string_view name : columns) {
-        wanted += (wanted.empty() ? "" : ",") + std::string(name);
-      }
-      return LineError(path, 1,
-                       "no column '" + std::string(column) +
-                           "'; the header must have " + wanted);
-    }
-  }
+  const Status checked = CheckColumns(*table, path, columns);
+  if (!checked.ok()) return checked.error();
   return table;
+}
+
+Status ReadCsvRows(const std::string& path,
+                   std::initializer_list<std::string_view> columns,
+                   const CsvRowUse& use) {
+  Result<std::ifstream> file = OpenToRead(path);
+  if (!file.ok()) return file.error();
+  CsvTable table;  // Of its rows there is never one.
+  TableReader reader(path);
+  for (std::string part; NextPart(*file, part);) {
+    const Status read = reader.Take(part, [&](CsvRow row) -> Status {
+      if (!table.header.empty()) return use(table, std::move(row));
+      table.header = std::move(row.fields);
+      return CheckColumns(table, path, columns);
+    });
+    if (!read.ok()) return read.error();
+  }
+  if (file->bad()) {
+    return Error{ErrorCode::kUnavailable, path + ": cannot be read"};
+  }
+  return reader.Finish();
 }
 
 std::string CsvLine(const std::vector<std::string>& fields) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -34,6 +35,15 @@ Result<CsvTable> ParseCsv(std::string_view text, const std::string& name);
 /// others.
 Result<CsvTable> ReadCsv(const std::string& path,
                          std::initializer_list<std::string_view> columns);
+
+/// What is done with a record; `table` has the header and no rows.
+using CsvRowUse = std::function<Status(const CsvTable& table, CsvRow row)>;
+
+/// The same for tables of any length: record by record, in bounded memory. An
+/// error of `use` ends it.
+Status ReadCsvRows(const std::string& path,
+                   std::initializer_list<std::string_view> columns,
+                   const CsvRowUse& use);
 
 /// Returns one line of CSV with its line feed, quoting where needed.
 std::string CsvLine(const std::vector<std::string>& fields);

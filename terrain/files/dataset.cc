@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
-#include <unordered_set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -76,23 +76,23 @@ Result<DatasetCase> ParseCase(const CsvTable& table, CsvRow row,
 }
 
 Result<std::vector<DatasetCase>> ReadCases(const std::string& path) {
-  Result<CsvTable> table = ReadCsv(
-      path, {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y"});
-  if (!table.ok()) return table.error();
   std::vector<DatasetCase> cases;
-  cases.reserve(table->rows.size());  // So that the ids do not move.
-  std::unordered_set<std::string_view> ids;
-  for (CsvRow& row : table->rows) {
-    const int line = row.line;
-    Result<DatasetCase> one = ParseCase(*table, std::move(row), path);
-    if (!one.ok()) return one.error();
-    cases.push_back(std::move(*one));
-    const std::string& id = cases.back().case_id;
-    if (!ids.insert(id).second) {
-      return Error{ErrorCode::kInvalid, path + ":" + std::to_string(line) +
-                                            ": case_id '" + id +
-                                            "' comes twice"};
-    }
+  std::vector<int> lines;
+  const Status read = ReadCsvRows(
+      path, {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y"},
+      [&](const CsvTable& table, CsvRow row) -> Status {
+        lines.push_back(row.line);
+        Result<DatasetCase> one = ParseCase(table, std::move(row), path);
+        if (!one.ok()) return one.error();
+        cases.push_back(*std::move(one));
+        return Done{};
+      });
+  if (!read.ok()) return read.error();
+  const std::optional<std::size_t> twice = IndexOf(cases).FirstDouble();
+  if (twice) {
+    return Error{ErrorCode::kInvalid,
+                 path + ":" + std::to_string(lines[*twice]) + ": case_id '" +
+                     cases[*twice].case_id + "' comes twice"};
   }
   return cases;
 }
@@ -124,6 +124,13 @@ const DatasetCase* Dataset::Find(const std::string& case_id) const {
         return c.case_id == case_id;
       });
   return found == cases.end() ? nullptr : &*found;
+}
+
+IdIndex IndexOf(const std::vector<DatasetCase>& cases) {
+  std::vector<const std::string*> ids;
+  ids.reserve(cases.size());
+  for (const DatasetCase& c : cases) ids.push_back(&c.case_id);
+  return IdIndex(std::move(ids));
 }
 
 Result<Dataset> ReadDataset(const std::string& folder) {

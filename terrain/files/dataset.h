@@ -7,6 +7,7 @@
 
 #include "terrain/cell.h"
 #include "terrain/files/csv.h"
+#include "terrain/files/id_index.h"
 #include "terrain/legend.h"
 #include "terrain/map.h"
 #include "terrain/result.h"
@@ -35,9 +36,13 @@ struct Dataset {
   Legend legend;
   std::vector<DatasetCase> cases;  ///< In order of cases.csv.
 
-  /// Returns the case of an id, or nullptr.
+  /// Returns the case of an id, or nullptr. Takes time; for many ids there is
+  /// IndexOf.
   const DatasetCase* Find(const std::string& case_id) const;
 };
+
+/// The index of cases by their ids. The list must stay as it is.
+IdIndex IndexOf(const std::vector<DatasetCase>& cases);
 
 /// Reads the folder's tables, no maps. A missing dataset.json leaves name,
 /// version, digest and json empty.

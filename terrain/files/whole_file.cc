@@ -20,8 +20,7 @@ Error CannotWrite(const std::string& path, const std::string& reason) {
 
 }  // namespace
 
-Result<std::string> ReadWholeFile(const std::string& path,
-                                  std::size_t max_bytes) {
+Result<std::ifstream> OpenToRead(const std::string& path) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status)) {
@@ -35,6 +34,15 @@ Result<std::string> ReadWholeFile(const std::string& path,
     return Error{ErrorCode::kUnavailable,
                  path + ": cannot be opened: " + std::strerror(errno)};
   }
+  return file;
+}
+
+Result<std::string> ReadWholeFile(const std::string& path,
+                                  std::size_t max_bytes) {
+  Result<std::ifstream> opened = OpenToRead(path);
+  if (!opened.ok()) return opened.error();
+  std::ifstream file = *std::move(opened);
+  std::error_code failure;
   const std::uintmax_t size = fs::file_size(path, failure);
   if (failure || size > max_bytes) {
     return Error{ErrorCode::kUnsupported,

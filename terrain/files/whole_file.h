@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "terrain/result.h"
 
 namespace terra {
+
+/// Opens a regular file. Errors: not there, not readable, not a file.
+Result<std::ifstream> OpenToRead(const std::string& path);
 
 /// Reads a regular file into memory. Errors: not there, not readable, not a
 /// file, larger than `max_bytes`.

@@ -2,15 +2,15 @@
 
 #include <cstdlib>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "advisor/recording_clients.h"
-#include "terrain/builtin_legends.h"
 #include "terrain/files/whole_file.h"
 #include "terrain/route_cost.h"
+#include "tests/support/bar_map.h"
 #include "tests/support/scripted_llm_server.h"
 #include "tests/support/temp_folder.h"
 
@@ -18,13 +18,12 @@ namespace terra::advisor {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::kCheaperAnswer;
 using ::testing::Not;
 using testing::ReplyBody;
 using testing::ScriptedLlmServer;
 using testing::ScriptedReply;
 using testing::TempFolder;
-
-constexpr const char* kCheaper = "No. [(5, 60), (70, 28), (90, 28), (155, 60)]";
 
 ScriptedReply Saying(const std::string& text) {
   ScriptedReply reply;
@@ -32,15 +31,10 @@ ScriptedReply Saying(const std::string& text) {
   return reply;
 }
 
-// A costly bar between start and goal, open at the top, and a straight
-// baseline across it.
+// A costly bar, and a straight baseline across it.
 struct Problem {
-  TerrainMap map = [] {
-    ByteRaster ids = ByteRaster::Zero(120, 160);
-    ids.block(30, 70, 90, 20).setConstant(10);
-    return TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value();
-  }();
-  Route baseline = {{5, 60}, {155, 60}};
+  TerrainMap map = testing::BarMap();
+  Route baseline = {testing::kBarStart, testing::kBarGoal};
   double cost = WalkRoute(map, baseline).cost;
 
   AdviceTask task() const {
@@ -65,7 +59,7 @@ std::unique_ptr<Backend> Make(const LlmBackendOptions& options) {
 
 TEST(LlmBackendTest, ProposesWhatTheModelAnswered) {
   const Problem problem;
-  ScriptedLlmServer server({Saying(kCheaper)});
+  ScriptedLlmServer server({Saying(kCheaperAnswer)});
   const auto backend = Make(ChatOptions(server.url()));
   const AdviceAnswer answer = backend->Advise(problem.task(), {});
   ASSERT_EQ(answer.kind, AnswerKind::kPropose) << answer.error;
@@ -73,7 +67,7 @@ TEST(LlmBackendTest, ProposesWhatTheModelAnswered) {
   ASSERT_EQ(answer.candidates.size(), 1u);
   EXPECT_EQ(answer.candidates[0].route,
             (Route{{5, 60}, {70, 28}, {90, 28}, {155, 60}}));
-  EXPECT_EQ(answer.answer_text, kCheaper);
+  EXPECT_EQ(answer.answer_text, kCheaperAnswer);
   EXPECT_EQ(answer.model, "scripted");
   EXPECT_EQ(answer.tokens_in, 1000);
   EXPECT_EQ(answer.request_hash.size(), 32u);
@@ -162,7 +156,7 @@ TEST(LlmBackendTest, TheKeyReachesTheServerAndNothingElse) {
 
 TEST(LlmBackendTest, NobodyIsAskedWhereTooLittleCanBeGained) {
   const Problem problem;
-  ScriptedLlmServer server({Saying(kCheaper)});
+  ScriptedLlmServer server({Saying(kCheaperAnswer)});
   LlmBackendOptions options = ChatOptions(server.url());
   options.min_gain_percent = 90;
   EXPECT_EQ(Make(options)->Advise(problem.task(), {}).kind,
@@ -185,7 +179,28 @@ TEST(LlmBackendTest, FailuresInSuccessionOpenTheBreaker) {
   EXPECT_EQ(server.request_count(), 3);
   EXPECT_EQ(backend->figures().state, "failing: breaker open");
   EXPECT_THAT(backend->Advise(problem.task(), {}).error,
-              HasSubstr("breaker_open"));
+              HasSubstr("breaker_open: calls pause after --breaker-failures"));
+}
+
+TEST(LlmBackendTest, ALimitThatIsReachedIsNamed) {
+  const Problem problem;
+  ScriptedLlmServer server({Saying("Yes")});
+  LlmBackendOptions often = ChatOptions(server.url());
+  often.service.limits.calls_per_minute = 1;
+  LlmBackendOptions dear = ChatOptions(server.url());
+  dear.service.prices = {"local-model=1000:1000"};
+  dear.service.limits.spend_per_hour_usd = 0.5;
+  for (const auto& [options, limit] :
+       {std::pair<LlmBackendOptions, std::string>{
+            often, "rate_limit: --calls-per-minute is reached"},
+        {dear, "spend_limit: --spend-per-hour is reached"}}) {
+    const auto backend = Make(options);
+    EXPECT_EQ(backend->Advise(problem.task(), {}).kind, AnswerKind::kRetain);
+    const AdviceAnswer refused = backend->Advise(problem.task(), {});
+    EXPECT_EQ(refused.kind, AnswerKind::kFailed);
+    EXPECT_THAT(refused.error, HasSubstr(limit));
+  }
+  EXPECT_EQ(server.request_count(), 2);
 }
 
 TEST(LlmBackendTest, TargetsOfLlmAstarAreJoinedByTheNativeSearch) {

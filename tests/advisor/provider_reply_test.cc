@@ -142,14 +142,88 @@ TEST(ProviderReplyTest, TheReasonIsFoundInEveryFormOfError) {
   }
 }
 
-TEST(ProviderReplyTest, AStreamIsCalledOne) {
-  ScriptedReply stream;
-  stream.content_type = "text/event-stream";
-  stream.body = "data: {\"choices\":[]}\n\ndata: [DONE]\n\n";
-  ScriptedLlmServer server({stream});
-  const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
-  EXPECT_EQ(reply.reason, NoAnswer::kBadReply);
-  EXPECT_THAT(reply.error, HasSubstr("event stream"));
+struct LocalServerError {
+  int status;
+  std::string body;
+  int tries;
+  std::string said;
+};
+
+// Errors of llama.cpp's server, as it sent them to questions of ours.
+TEST(ProviderReplyTest, ErrorsOfALocalModelServerAreToldAsTheyAre) {
+  const std::vector<LocalServerError> errors = {
+      {503,
+       R"({"error":{"message":"Loading model","type":"unavailable_error",
+           "code":503}})",
+       2, "HTTP 503: Loading model"},
+      {500,
+       R"({"error":{"code":500,"message":"image input is not supported - hint: )"
+       R"(if this is unexpected, you may need to provide the mmproj",)"
+       R"("type":"server_error"}})",
+       2, "you may need to provide the mmproj"},
+      {501,
+       R"({"error":{"code":501,"message":"not supported",
+           "type":"not_supported_error"}})",
+       1, "HTTP 501: not supported"},
+      {400,
+       R"({"error":{"code":400,"message":"request (4228 tokens) exceeds the )"
+       R"(available context size (1024 tokens), try increasing it","type":)"
+       R"("exceed_context_size_error","n_prompt_tokens":4228,"n_ctx":1024}})",
+       1, "exceeds the available context size"},
+      {404,
+       R"({"error":{"message":"File Not Found","type":"not_found_error",
+           "code":404}})",
+       1, "check --base-url"},
+      {401,
+       R"({"error":{"message":"Invalid API Key","type":"authentication_error",
+           "code":401}})",
+       1, "set the environment variable"}};
+  for (const std::string provider : {"chat", "openai", "anthropic"}) {
+    for (const LocalServerError& error : errors) {
+      ScriptedReply scripted;
+      scripted.status = error.status;
+      scripted.body = error.body;
+      scripted.headers = {{"retry-after-ms", "1"}};
+      ScriptedLlmServer server({scripted});
+      ProviderOptions options;
+      options.base_url = server.url();
+      options.retry.max_retries = 1;
+      auto client = ProviderClient::Create(provider, options);
+      ASSERT_TRUE(client.ok());
+      const LlmReply reply = (*client)->Ask(Question(), {});
+      EXPECT_EQ(reply.reason, NoAnswer::kHttpStatus);
+      EXPECT_EQ(reply.tries, error.tries) << error.body;
+      EXPECT_THAT(reply.error, HasSubstr(error.said));
+    }
+  }
+}
+
+// Copying and writing JSON recurse: what is nested deeply must not get there.
+TEST(ProviderReplyTest, DeepNestingIsNoAnswerAndExhaustsNoStack) {
+  const std::string open(3'000'000, '[');
+  const std::string close(3'000'000, ']');
+  ScriptedReply inside = Good("chat");
+  inside.body.insert(1, R"("a":")"
+                        "\\/"
+                        R"(","b":)" +
+                            open + close + ",");
+  ScriptedReply around = Failing(400);
+  around.body = open + R"({"error":{"message":"x"}})" + close;
+  ScriptedReply stream = Good("chat");
+  stream.body = "data: " + inside.body + "\n\n";
+  ScriptedLlmServer server({inside, around, stream, Good("chat")});
+  auto client = Client("chat", server.url());
+  EXPECT_EQ(client->Ask(Question(), {}).reason, NoAnswer::kBadReply);
+  EXPECT_EQ(client->Ask(Question(), {}).reason, NoAnswer::kHttpStatus);
+  const LlmReply reply = client->Ask(Question(), {});
+  EXPECT_EQ(reply.text, "Yes") << "the stream had no end: asked again";
+  EXPECT_EQ(reply.tries, 2);
+  const std::string sixty = std::string(60, '[') + std::string(60, ']');
+  EXPECT_EQ(MakeChatFormat()
+                ->ReadReply("{\"a\":\"[[[[{\\\"[\",\"b\":" + sixty +
+                            R"(,"choices":[{"message":{"content":"Yes"}}]})")
+                .text,
+            "Yes");
 }
 
 TEST(ProviderReplyTest, AWrongContentTypeDoesNotMatter) {

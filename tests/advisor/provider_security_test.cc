@@ -116,6 +116,19 @@ TEST(ProviderSecurityTest, NothingFromOutsideSteersATerminal) {
   EXPECT_EQ(error.find_first_of("\x1b\r\n\x7f"), std::string::npos) << error;
 }
 
+TEST(ProviderSecurityTest, NoValueBeginsAHeaderOfItsOwn) {
+  ScriptedLlmServer server({Good("anthropic")});
+  ProviderOptions options;
+  options.base_url = server.url();
+  options.settings.anthropic_version = "2023-06-01\r\nx-evil: 1";
+  auto client = ProviderClient::Create("anthropic", options);
+  ASSERT_TRUE(client.ok());
+  const LlmReply reply = (*client)->Ask(Question(), {});
+  EXPECT_EQ(reply.reason, NoAnswer::kTransport);
+  EXPECT_THAT(reply.error, HasSubstr("control character"));
+  EXPECT_EQ(server.request_count(), 0);
+}
+
 TEST(ProviderSecurityTest, RedirectsAreNotFollowed) {
   ScriptedLlmServer target({Good("openai")});
   ScriptedLlmServer server(

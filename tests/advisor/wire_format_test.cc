@@ -63,6 +63,16 @@ TEST_P(GoldenRequestTest, GoesToTheDocumentedPathWithOneKeyHeader) {
   EXPECT_EQ(with_key, 1);
 }
 
+TEST(GeminiFormatTest, AModelMayBeNamedAsTheProviderListsIt) {
+  const auto format = MakeGeminiFormat();
+  GenerationSettings plain;
+  plain.model = "gemini-x";
+  GenerationSettings listed;
+  listed.model = "models/gemini-x";
+  EXPECT_EQ(format->Path(plain), "/v1beta/models/gemini-x:generateContent");
+  EXPECT_EQ(format->Path(listed), format->Path(plain));
+}
+
 TEST_P(GoldenRequestTest, SamplingSettingsAreNeverSent) {
   const auto format = MakeWireFormat(GetParam().provider);
   const std::string body =

@@ -17,6 +17,9 @@ using terra::testing::TempFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+const std::vector<std::string> kIds = {"a", "b", "c"};
+const IdIndex kAbc = IndexOf(kIds);
+
 CaseResult FullResult() {
   CaseResult r;
   r.case_id = "hard_0003";
@@ -62,7 +65,7 @@ std::vector<std::string> IdsIn(const std::string& path) {
 }
 
 std::unique_ptr<ResultsFile> OpenAbc(const std::string& path) {
-  auto file = ResultsFile::Open(path, {"a", "b", "c"}, 1);
+  auto file = ResultsFile::Open(path, kAbc, 1);
   EXPECT_TRUE(file.ok()) << ErrorMessage(file);
   return *std::move(file);
 }
@@ -175,7 +178,7 @@ TEST(ResultsFile, IsLockedAgainstASecondWriter) {
   const TempFolder folder;
   const std::string path = folder.Path("r.csv");
   const auto file = OpenAbc(path);
-  EXPECT_THAT(ErrorMessage(ResultsFile::Open(path, {"a"}, 1)),
+  EXPECT_THAT(ErrorMessage(ResultsFile::Open(path, kAbc, 1)),
               HasSubstr("another process"));
 }
 
@@ -183,7 +186,7 @@ TEST(ResultsFile, RefusesRowsOfAnotherRun) {
   const TempFolder folder;
   const std::string path =
       folder.Write("r.csv", ResultsHeader() + ResultLine(Row("z")));
-  EXPECT_THAT(ErrorMessage(ResultsFile::Open(path, {"a"}, 1)),
+  EXPECT_THAT(ErrorMessage(ResultsFile::Open(path, kAbc, 1)),
               HasSubstr("'z' repeat 0 is not of this run"));
 }
 

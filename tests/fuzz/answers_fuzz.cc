@@ -40,7 +40,8 @@ void CheckRoute(std::string_view text) {
 
 void CheckReply(std::string_view provider, std::string_view body) {
   const auto format = terra::advisor::MakeWireFormat(provider);
-  const terra::advisor::WireReply reply = format->ReadReply(body);
+  const auto whole = format->Whole(std::string(body));
+  const terra::advisor::WireReply reply = format->ReadReply(whole.value_or(""));
   terra::fuzz::Require(reply.status != terra::advisor::ReplyStatus::kNoAnswer ||
                            !reply.error.empty(),
                        "what is no answer says why");

@@ -96,6 +96,19 @@ save("answers", "chat", b'\x08{"choices":[{"message":{"content":"Yes"},'
      b'"finish_reason":"stop"}],"usage":{"prompt_tokens":5}}')
 save("answers", "error", b'\5{"error":{"message":"slow down","code":'
      b'"rate_limit_exceeded","type":"requests"}}')
+save("answers", "openai_stream", b'\5event: response.completed\ndata: {"type":'
+     b'"response.completed","response":{"status":"completed","output":[{"type":'
+     b'"message","content":[{"type":"output_text","text":"Yes"}]}]}}\n\n')
+save("answers", "gemini_stream", b'\6data: {"candidates":[{"content":{"parts":[{'
+     b'"text":"Y"}]}}]}\r\n\r\ndata: {"candidates":[{"content":{"parts":[{"text":'
+     b'"es"}]},"finishReason":"STOP"}]}\r\n\r\n')
+save("answers", "anthropic_stream", b'\7event: message_start\ndata: {"type":'
+     b'"message_start","message":{"usage":{"input_tokens":5}}}\n\ndata: {"type":'
+     b'"content_block_delta","delta":{"type":"text_delta","text":"Yes"}}\n\n'
+     b'data: {"type":"message_delta","delta":{"stop_reason":"end_turn"}}\n\n')
+save("answers", "chat_stream", b'\x08: hm\n\ndata: {"choices":[{"delta":{'
+     b'"content":"Yes"},"finish_reason":"stop"}]}\n\ndata: [DONE]\n\n')
+save("answers", "deep", b'\x08{"choices":' + b"[" * 200 + b"]" * 200 + b"}")
 save("answers", "batch", b'\x09{"custom_id":"ab-0","response":{"status_code":'
      b'200,"body":{"id":"r1","status":"completed","output":[]}},"error":null}')
 save("answers", "batch_error", b'\x09{"custom_id":"ab-0","result":{"type":'

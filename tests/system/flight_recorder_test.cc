@@ -15,7 +15,7 @@
 #include "logger/log_contents.h"
 #include "logger/log_info.h"
 #include "terrain/segment.h"
-#include "tests/system/bar_map.h"
+#include "tests/support/bar_map.h"
 #include "tests/system/robot.h"
 #include "verifier/verify.h"
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,8 +12,8 @@
 
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
+#include "tests/support/bar_map.h"
 #include "tests/support/scripted_llm_server.h"
-#include "tests/system/bar_map.h"
 #include "tests/system/robot.h"
 
 namespace terra {
@@ -21,6 +22,7 @@ namespace {
 using terra_msg::advice_t;
 using terra_msg::deployed_t;
 using terra_msg::status_t;
+using terra_msg::verdict_t;
 using testing::BarMap;
 using testing::kBarGoal;
 using testing::kBarStart;
@@ -30,22 +32,15 @@ using testing::Robot;
 using testing::ScriptedLlmServer;
 using testing::ScriptedReply;
 
-void StartDeployedPath(Robot& robot) {
-  robot.Start("map");
-  robot.Start("planner", {"--stride", "20"});
-  robot.Start("verifier");
-}
-
-std::vector<std::string> ChatOptions(const ScriptedLlmServer& server,
-                                     const std::string& deadline_s) {
-  return {"--backend",  "chat",     "--base-url",         server.url(),
-          "--deadline", deadline_s, "--breaker-failures", "0",
-          "--retries",  "0"};
-}
-
 ScriptedReply Saying(const std::string& text) {
   ScriptedReply reply;
   reply.body = ReplyBody("chat", text);
+  return reply;
+}
+
+ScriptedReply Silence() {
+  ScriptedReply reply;
+  reply.silent = true;
   return reply;
 }
 
@@ -70,7 +65,7 @@ std::vector<Fault> Faults() {
   };
   constexpr std::int8_t kFailed = advice_t::KIND_FAILED;
   constexpr std::int8_t kMalformed = advice_t::KIND_MALFORMED;
-  add("silence", kFailed, "deadline").silent = true;
+  add("silence", kFailed, "deadline") = Silence();
   ScriptedReply& stall = add("stalled body", kFailed, "deadline");
   stall.body_share = 0.5;
   stall.stall = true;
@@ -80,14 +75,8 @@ std::vector<Fault> Faults() {
     add("status " + std::to_string(status), kFailed, "http_status").status =
         status;
   }
-  add("hour-long wait", kFailed, "http_status") = [] {
-    ScriptedReply reply = Saying("");
-    reply.status = 429;
-    reply.headers = {{"retry-after", "3600"}};
-    return reply;
-  }();
   for (const char* wait :
-       {"retry-after-ms: 20", "retry-after: 1",
+       {"retry-after-ms: 20", "retry-after: 1", "retry-after: 3600",
         "retry-after: Thu, 01 Jan 1970 00:00:00 GMT", "retry-after: soon"}) {
     const std::string header = wait;
     const std::size_t colon = header.find(':');
@@ -95,12 +84,9 @@ std::vector<Fault> Faults() {
     busy.status = 429;
     busy.headers = {{header.substr(0, colon), header.substr(colon + 2)}};
   }
-  add("redirect", kFailed, "http_status") = [] {
-    ScriptedReply reply = Saying("");
-    reply.status = 302;
-    reply.headers = {{"location", "http://127.0.0.1:1/"}};
-    return reply;
-  }();
+  ScriptedReply& redirect = add("redirect", kFailed, "http_status");
+  redirect.status = 302;
+  redirect.headers = {{"location", "http://127.0.0.1:1/"}};
   ScriptedReply& cut = add("half of the chunks", kFailed, "transport");
   cut.framing = testing::Framing::kChunked;
   cut.body_share = 0.5;
@@ -124,8 +110,50 @@ std::vector<Fault> Faults() {
   return faults;
 }
 
-TEST(LlmAdvisor, EveryFaultIsNothingButMissingAdviceAndTheNextCallIsServed) {
-  Robot robot(BarMap());
+/// The deployed path and an advisor that asks a server of the test's.
+class LlmAdvisor : public ::testing::Test {
+ protected:
+  void StartAround(const ScriptedLlmServer& server,
+                   const std::string& deadline_s) {
+    robot_.Start("map");
+    robot_.Start("planner", {"--stride", "20"});
+    robot_.Start("verifier");
+    robot_.Start("model",
+                 {"--backend", "chat", "--base-url", server.url(), "--deadline",
+                  deadline_s, "--breaker-failures", "0", "--retries", "0"});
+  }
+
+  /// The request is served at once, whatever the advisor does.
+  std::optional<deployed_t> Ask(std::int64_t request_id) {
+    return robot_.Ask(request_id, kBarStart, kBarGoal);
+  }
+
+  std::optional<advice_t> AdviceOn(std::int64_t request_id) {
+    return robot_.advice_bus().WaitFor<advice_t>(
+        [request_id](const advice_t& message) {
+          return message.request_id == request_id;
+        });
+  }
+
+  std::optional<verdict_t> VerdictOn(std::int64_t request_id) {
+    return robot_.deployed_bus().WaitFor<verdict_t>(
+        [request_id](const verdict_t& message) {
+          return message.request_id == request_id;
+        });
+  }
+
+  /// Asks, and waits until the advisor hangs in its call for ten minutes.
+  void HangOn(std::int64_t request_id, ScriptedLlmServer& server) {
+    StartAround(server, "600");
+    ASSERT_TRUE(Ask(request_id));
+    ASSERT_TRUE(server.WaitForRequests(1, 20));
+  }
+
+  // First: it may move to a network of its own.
+  Robot robot_{BarMap()};
+};
+
+TEST_F(LlmAdvisor, EveryFaultIsNothingButMissingAdviceAndTheNextCallIsServed) {
   std::mutex mutex;
   ScriptedReply next;
   const auto set_next = [&](const ScriptedReply& reply) {
@@ -136,113 +164,88 @@ TEST(LlmAdvisor, EveryFaultIsNothingButMissingAdviceAndTheNextCallIsServed) {
     const std::scoped_lock lock(mutex);
     return next;
   });
-  StartDeployedPath(robot);
-  robot.Start("model", ChatOptions(server, "2"));
-  ASSERT_TRUE(robot.WaitForReady("model"));
+  StartAround(server, "2");
+  ASSERT_TRUE(robot_.WaitForReady("model"));
   std::int64_t request_id = 100;
   for (const Fault& fault : Faults()) {
     SCOPED_TRACE(fault.name);
     set_next(fault.reply);
     const bus::Time asked = bus::Clock::now();
-    const auto deployed = robot.Ask(++request_id, kBarStart, kBarGoal);
+    const auto deployed = Ask(++request_id);
     ASSERT_TRUE(deployed);
     EXPECT_EQ(deployed->mode, deployed_t::MODE_BASELINE);
-    const auto advice = robot.advice_bus().WaitFor<advice_t>(
-        [request_id](const advice_t& message) {
-          return message.request_id == request_id;
-        });
+    const auto advice = AdviceOn(request_id);
     ASSERT_TRUE(advice);
     // Told, not judged: the deadline here is 2 s.
     std::cout << fault.name << ": " << advice->advice_error << "; ready after "
               << Milliseconds(bus::Clock::now() - asked) << " ms\n";
     EXPECT_EQ(int{advice->kind}, int{fault.kind});
     EXPECT_EQ(advice->advice_error.substr(0, fault.error.size()), fault.error);
+
     set_next(Saying(kCheaperAnswer));
-    ASSERT_TRUE(robot.Ask(++request_id, kBarStart, kBarGoal));
-    const auto answered = robot.advice_bus().WaitFor<advice_t>(
-        [request_id](const advice_t& message) {
-          return message.request_id == request_id;
-        });
+    ASSERT_TRUE(Ask(++request_id));
+    const auto answered = AdviceOn(request_id);
     ASSERT_TRUE(answered);
     EXPECT_EQ(int{answered->kind}, int{advice_t::KIND_PROPOSE})
         << answered->advice_error;
-    const auto verdict = robot.deployed_bus().WaitFor<terra_msg::verdict_t>(
-        [request_id](const terra_msg::verdict_t& message) {
-          return message.request_id == request_id;
-        });
+    const auto verdict = VerdictOn(request_id);
     ASSERT_TRUE(verdict);
-    EXPECT_EQ(int{verdict->code}, int{terra_msg::verdict_t::CODE_ACCEPTED});
-    robot.deployed_bus().Forget();
-    robot.advice_bus().Forget();
+    EXPECT_EQ(int{verdict->code}, int{verdict_t::CODE_ACCEPTED});
+    robot_.deployed_bus().Forget();
+    robot_.advice_bus().Forget();
   }
 }
 
-TEST(LlmAdvisor, ANewRequestEndsTheCallForTheOldOneAtOnce) {
-  Robot robot(BarMap());
-  ScriptedReply silent;
-  silent.silent = true;
-  ScriptedLlmServer server({silent, Saying(kCheaperAnswer)});
-  StartDeployedPath(robot);
-  robot.Start("model", ChatOptions(server, "600"));
-  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
-  ASSERT_TRUE(server.WaitForRequests(1, 20));
-  ASSERT_TRUE(robot.Ask(12, kBarStart, kBarGoal));
-  EXPECT_TRUE(robot.WaitForDeployed(12, deployed_t::MODE_CANDIDATE))
-      << "the call for request 11 would hang for ten minutes";
-  for (const advice_t& advice : robot.advice_bus().Heard<advice_t>()) {
+TEST_F(LlmAdvisor, ANewRequestEndsTheCallForTheOldOneAtOnce) {
+  ScriptedLlmServer server({Silence(), Saying(kCheaperAnswer)});
+  ASSERT_NO_FATAL_FAILURE(HangOn(11, server));
+  ASSERT_TRUE(Ask(12));
+  EXPECT_TRUE(robot_.WaitForDeployed(12, deployed_t::MODE_CANDIDATE));
+  for (const advice_t& advice : robot_.advice_bus().Heard<advice_t>()) {
     EXPECT_EQ(advice.request_id, 12);
   }
 }
 
-TEST(LlmAdvisor, ANewMapEndsTheCallForTheOldOneAtOnce) {
-  Robot robot(BarMap());
-  ScriptedReply silent;
-  silent.silent = true;
-  ScriptedLlmServer server({silent, Saying(kCheaperAnswer)});
-  StartDeployedPath(robot);
-  robot.Start("model", ChatOptions(server, "600"));
-  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
-  ASSERT_TRUE(server.WaitForRequests(1, 20));
+TEST_F(LlmAdvisor, ANewMapEndsTheCallForTheOldOneAtOnce) {
+  ScriptedLlmServer server({Silence(), Saying(kCheaperAnswer)});
+  ASSERT_NO_FATAL_FAILURE(HangOn(11, server));
   ByteRaster ids = ByteRaster::Zero(120, 160);
   ids.block(30, 70, 90, 20).setConstant(9);
   const TerrainMap changed =
       TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value();
-  robot.SaveMap(changed);
-  const auto advice =
-      robot.advice_bus().WaitFor<advice_t>([](const advice_t& message) {
-        return message.request_id == 11;
-      });
-  ASSERT_TRUE(advice) << "the call for the old map would hang for ten minutes";
+  robot_.SaveMap(changed);
+  const auto advice = AdviceOn(11);
+  ASSERT_TRUE(advice);
   EXPECT_EQ(advice->map_id, MapId(changed));
 }
 
-TEST(LlmAdvisor, HeartbeatTellsCallsTokensAndLatency) {
-  Robot robot(BarMap());
-  ScriptedLlmServer server({Saying(kCheaperAnswer)});
-  StartDeployedPath(robot);
-  robot.Start("model", ChatOptions(server, "10"));
-  ASSERT_TRUE(robot.Ask(11, kBarStart, kBarGoal));
-  const auto status =
-      robot.deployed_bus().WaitFor<status_t>([](const status_t& message) {
-        if (message.status_name != "model") return false;
-        bool called = false;
-        bool tokens = false;
-        bool latency = false;
-        for (std::size_t i = 0; i < message.counter_name.size(); ++i) {
-          const std::string& name = message.counter_name[i];
-          called |= name == "llm_calls" && message.counter_value[i] == 1;
-          tokens |= name == "tokens_in" && message.counter_value[i] == 1000;
-          latency |= name == "llm_p95_ms";
-        }
-        return called && tokens && latency;
-      });
-  EXPECT_TRUE(status);
+/// -1 = there is none of that name.
+std::int64_t CounterOf(const status_t& status, const std::string& name) {
+  for (std::size_t i = 0; i < status.counter_name.size(); ++i) {
+    if (status.counter_name[i] == name) return status.counter_value[i];
+  }
+  return -1;
 }
 
-TEST(LlmAdvisor, AMissingKeyIsSaidAtTheStart) {
-  Robot robot(BarMap());
+TEST_F(LlmAdvisor, HeartbeatTellsCallsTokensAndLatency) {
+  ScriptedReply late = Saying(kCheaperAnswer);
+  late.delay_s = 0.05;
+  ScriptedLlmServer server({late});
+  StartAround(server, "10");
+  ASSERT_TRUE(Ask(11));
+  EXPECT_TRUE(
+      robot_.deployed_bus().WaitFor<status_t>([](const status_t& message) {
+        return message.status_name == "model" &&
+               CounterOf(message, "llm_calls") == 1 &&
+               CounterOf(message, "tokens_in") == 1000 &&
+               CounterOf(message, "tokens_out") == 20 &&
+               CounterOf(message, "llm_p95_ms") > 0;
+      }));
+}
+
+TEST_F(LlmAdvisor, AMissingKeyIsSaidAtTheStart) {
   testing::ChildProcess& advisor =
-      robot.Start("model", {"--backend", "anthropic"});
+      robot_.Start("model", {"--backend", "anthropic"});
   EXPECT_EQ(advisor.WaitForExit(testing::BusPeer::kPatience), 1);
   EXPECT_NE(advisor.output().find("ANTHROPIC_API_KEY"), std::string::npos);
 }

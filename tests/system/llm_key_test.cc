@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/bar_map.h"
 #include "tests/support/scripted_llm_server.h"
-#include "tests/system/bar_map.h"
 #include "tests/system/robot.h"
 
 namespace terra {

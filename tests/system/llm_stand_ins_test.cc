@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "advisor/http_transport.h"
-#include "tests/system/bar_map.h"
+#include "tests/support/bar_map.h"
 #include "tests/system/robot.h"
 
 namespace terra {

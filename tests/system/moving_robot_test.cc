@@ -19,7 +19,7 @@
 #include "terrain/segment.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/virtual_network.h"
-#include "tests/system/bar_map.h"
+#include "tests/support/bar_map.h"
 #include "verifier/verifier_node.h"
 
 namespace terra {

@@ -62,6 +62,61 @@ TEST(Csv, AMissingColumnIsNamed) {
               HasSubstr("no column 'k'"));
 }
 
+// What ReadCsvRows gives of a file, a line each; its error last.
+std::vector<std::string> RowsOf(const std::string& path) {
+  std::vector<std::string> rows;
+  const Status read = ReadCsvRows(
+      path, {"a"}, [&](const CsvTable& table, const CsvRow& row) -> Status {
+        EXPECT_EQ(table.Column("a"), 0);
+        rows.push_back(std::to_string(row.line) + " " + CsvLine(row.fields));
+        return Done{};
+      });
+  if (!read.ok()) rows.push_back(ErrorMessage(read));
+  return rows;
+}
+
+TEST(Csv, RowByRowALongTableIsTheSame) {
+  // Far more than is read at once, with line breaks inside fields.
+  testing::Random random(3);
+  std::string text =
+      "\xEF\xBB\xBF"
+      "a,b\r\n";
+  for (int i = 0; i < 20'000; ++i) {
+    text += CsvLine({std::to_string(i),
+                     std::string(static_cast<std::size_t>(random.Int(0, 9)),
+                                 "\n\",x"[random.Int(0, 3)])});
+  }
+  const testing::TempFolder folder;
+  for (const char* end : {"last,1", "last,1\n", "last,\"1", "last\n"}) {
+    const std::string path = folder.Write("r.csv", text + end);
+    const auto table = ParseCsv(text + end, path);
+    std::vector<std::string> rows = RowsOf(path);
+    if (!table.ok()) {
+      EXPECT_EQ(rows.back(), ErrorMessage(table));
+      continue;
+    }
+    ASSERT_EQ(rows.size(), table->rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const CsvRow& row = table->rows[i];
+      ASSERT_EQ(rows[i], std::to_string(row.line) + " " + CsvLine(row.fields));
+    }
+  }
+}
+
+TEST(Csv, RowByRowFaultsAreNamed) {
+  const testing::TempFolder folder;
+  EXPECT_THAT(RowsOf(folder.Path("none")),
+              ElementsAre(HasSubstr("no such file")));
+  EXPECT_THAT(RowsOf(folder.Path("")),
+              ElementsAre(HasSubstr("not a regular file")));
+  EXPECT_THAT(RowsOf(folder.Write("r.csv", "\n")),
+              ElementsAre(HasSubstr("no header")));
+  EXPECT_THAT(RowsOf(folder.Write("r.csv", "b\n1\n")),
+              ElementsAre(HasSubstr("no column 'a'")));
+  EXPECT_THAT(RowsOf(folder.Write("r.csv", "a\n1\n1,2\n3\n")),
+              ElementsAre("2 1\n", HasSubstr("r.csv:3: 2 fields")));
+}
+
 TEST(Csv, WhatIsWrittenIsReadBack) {
   testing::Random random(7);
   const std::string alphabet = "ab,\"\n\r ;";

@@ -83,6 +83,8 @@ TEST_F(RequestToAModel, AnyAnswerThatTheGateJudgedIsAdvice) {
       EXPECT_THAT(said.output, HasSubstr(verdict));
     }
   }
+  EXPECT_THAT(Request().output, HasSubstr("; no_list"))
+      << "why it could not be read";
   EXPECT_THAT(model_->output(), HasSubstr("SIMULATED"))
       << "said at the start of whoever answers on this machine";
 }

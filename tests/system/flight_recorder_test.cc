@@ -102,6 +102,11 @@ void ServeRequest(Robot& robot, std::int64_t id, Cell start, Cell goal) {
         return message.request_id == id;
       });
   ASSERT_TRUE(baseline);
+  // Advice for a baseline that the gate has not heard of gets no verdict.
+  ASSERT_TRUE(
+      robot.deployed_bus().WaitFor<deployed_t>([&](const deployed_t& deployed) {
+        return deployed.baseline_digest == baseline->baseline_digest;
+      }));
   advice_t lie = AdviceOf("liar", *baseline);
   bus::SetWaypoints(lie, {start, {400, 3}, goal});
   robot.advice_bus().Send(lie);
@@ -314,8 +319,7 @@ void ExpectSame(const Decided& recorded, const Decided& replayed,
                 bool renumbered) {
   if (AnySwapped(recorded, replayed)) {
     // Of two routes that are equally cheap the first stays.
-    EXPECT_NEAR(recorded.last_cost, replayed.last_cost,
-                verifier::kEpsilon);
+    EXPECT_NEAR(recorded.last_cost, replayed.last_cost, verifier::kEpsilon);
   } else {
     EXPECT_EQ(recorded.last_route, replayed.last_route);
   }
@@ -349,8 +353,9 @@ DecidedByRequest Replay(const std::string& log, std::int64_t session) {
   // taken all when it has repeated what is in force a few times.
   std::size_t repeated = 0;
   const std::size_t before = listener.Heard<deployed_t>().size();
-  EXPECT_TRUE(listener.WaitFor<deployed_t>(
-      [&](const deployed_t&) { return ++repeated == before + 3; }));
+  EXPECT_TRUE(listener.WaitFor<deployed_t>([&](const deployed_t&) {
+    return ++repeated == before + 3;
+  }));
   DecidedByRequest decided = DecidedBy(listener);
   EXPECT_EQ(verifier.Terminate(), 0);
   return decided;
@@ -423,7 +428,8 @@ void SendPosesAsTheyAreLogged(Robot& robot, int count) {
     for (int n = 0; n < kAtOnce && i < count; ++n, ++i) {
       SendPose(robot, i);
     }
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::seconds(10);
     while (BytesLogged(robot) < before + kAtOnce * kBytesEach) {
       ASSERT_LT(std::chrono::steady_clock::now(), end) << "poses were lost";
       std::this_thread::sleep_for(milliseconds(5));

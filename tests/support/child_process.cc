@@ -122,7 +122,7 @@ std::string ChildProcess::output() const {
 
 RunResult RunToEnd(const std::vector<std::string>& command) {
   ChildProcess process(command);
-  const std::optional<int> code = process.WaitForExit(milliseconds(60'000));
+  const std::optional<int> code = process.WaitForExit(std::chrono::seconds(150));
   return {code.value_or(-1), process.output()};
 }
 

@@ -134,8 +134,8 @@ class BlockRelaxer {
     Lanes east = Load<Lanes>(beside + 1);
     if (!task_.corner_cutting) {
       const auto blocked_beside = Units(from, x) == 0;
-      west = blocked_beside | (Units(y, x - 1) == 0) ? limit_ : west;
-      east = blocked_beside | (Units(y, x + 1) == 0) ? limit_ : east;
+      west = (blocked_beside | (Units(y, x - 1) == 0)) ? limit_ : west;
+      east = (blocked_beside | (Units(y, x + 1) == 0)) ? limit_ : east;
     }
     return Min(west, east);
   }

@@ -69,8 +69,9 @@ Estimate BootstrapMean(std::span<const Cluster> clusters) {
   TERRA_REQUIRE(count > 0);
   // Small samples are not worth a thread.
   constexpr std::size_t kManyClusters = 1000;
-  std::vector<double> means(kBootstrapResamples);
-  ParallelFor(kBootstrapResamples, clusters.size() < kManyClusters ? 1 : 0,
+  const int resamples = NumResamples(clusters.size());
+  std::vector<double> means(static_cast<std::size_t>(resamples));
+  ParallelFor(resamples, clusters.size() < kManyClusters ? 1 : 0,
               [&](std::int64_t i) {
                 means[static_cast<std::size_t>(i)] = ResampledMean(clusters, i);
               });

@@ -1,5 +1,6 @@
 #include "chaos/attacker.h"
 
+#include <iterator>
 #include <utility>
 
 #include "bus/codec.h"
@@ -51,6 +52,12 @@ void Attacker::Overhear(std::span<const std::uint8_t> payload) {
   overheard_.emplace_back(payload.begin(), payload.end());
 }
 
+void Attacker::OverhearDeployed(Message message) {
+  if (!identity_.attacks_deployed_bus) return;
+  const bus::Channel channel = message.channel;
+  overheard_deployed_.insert_or_assign(channel, std::move(message));
+}
+
 std::optional<advice_t> Attacker::LastOverheard() const {
   for (auto bytes = overheard_.rbegin(); bytes != overheard_.rend(); ++bytes) {
     const Result<advice_t> advice = bus::Decode<advice_t>(*bytes);
@@ -96,8 +103,22 @@ std::vector<std::uint8_t> Attacker::Bytes(const advice_t& advice) {
   return bytes;
 }
 
-Datagram Attacker::Say(std::span<const std::uint8_t> payload) {
-  return WholeMessage(NextSequence(), channel(bus::Channel::kAdvice), payload);
+Attacker::Message Attacker::Good() {
+  if (overheard_deployed_.empty()) {
+    return {bus::Channel::kAdvice, Bytes(Honest())};
+  }
+  const int last = static_cast<int>(overheard_deployed_.size()) - 1;
+  return std::next(overheard_deployed_.begin(), Pick(0, last))->second;
+}
+
+const std::string& Attacker::AttackedChannel() {
+  if (!identity_.attacks_deployed_bus) return channel(bus::Channel::kAdvice);
+  return channel(static_cast<bus::Channel>(Pick(0, bus::kNumChannels - 1)));
+}
+
+Datagram Attacker::Say(const Message& message) {
+  return WholeMessage(NextSequence(), channel(message.channel),
+                      message.payload);
 }
 
 int Attacker::Pick(int low, int high) {

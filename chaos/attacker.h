@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <optional>
 #include <random>
 #include <span>
@@ -30,6 +30,12 @@ class Attacker {
     std::int64_t session = 0;
     bus::ChannelNames channels;
     std::uint64_t seed = 1;
+    bool attacks_deployed_bus = false;
+  };
+  /// A payload and the channel that it belongs to.
+  struct Message {
+    bus::Channel channel;
+    std::vector<std::uint8_t> payload;
   };
 
   explicit Attacker(Identity identity);
@@ -38,6 +44,8 @@ class Attacker {
   void Learn(const terra_msg::baseline_t& baseline, bus::MapPtr map);
   /// The payload of an ADVICE message of somebody else.
   void Overhear(std::span<const std::uint8_t> payload);
+  /// A message of the deployed bus.
+  void OverhearDeployed(Message message);
   /// The time that its messages are stamped with.
   void SetTime(std::int64_t unix_us) { unix_us_ = unix_us; }
 
@@ -48,6 +56,7 @@ class Attacker {
   const Route& best() const { return best_; }
   /// Some of the map's blocked cells.
   const std::vector<Cell>& blocked() const { return blocked_; }
+  bool attacks_deployed_bus() const { return identity_.attacks_deployed_bus; }
   const std::string& name() const { return identity_.name; }
   const std::string& channel(bus::Channel channel) const {
     return identity_.channels.name(channel);
@@ -64,11 +73,20 @@ class Attacker {
   }
   std::optional<terra_msg::advice_t> LastOverheard() const;
 
+  /// A well-formed message for the bus that is attacked: Honest advice; on the
+  /// deployed bus any that was overheard there. Pre: has_baseline().
+  Message Good();
+  /// A channel of the bus that is attacked.
+  const std::string& AttackedChannel();
+
   /// Bytes of a message, whatever it holds (bus::Encode refuses lies).
   static std::vector<std::uint8_t> Bytes(const terra_msg::advice_t& advice);
   /// As a datagram on the advice channel.
   Datagram Say(const terra_msg::advice_t& advice) { return Say(Bytes(advice)); }
-  Datagram Say(std::span<const std::uint8_t> payload);
+  Datagram Say(std::span<const std::uint8_t> payload) {
+    return Say({bus::Channel::kAdvice, {payload.begin(), payload.end()}});
+  }
+  Datagram Say(const Message& message);
 
   /// A number for LCM's own header; each message has its own.
   std::uint32_t NextSequence() { return sequence_++; }
@@ -98,6 +116,7 @@ class Attacker {
   std::optional<terra_msg::baseline_t> old_baseline_;
   Route old_best_;
   std::vector<std::vector<std::uint8_t>> overheard_;
+  std::map<bus::Channel, Message> overheard_deployed_;  // The newest of each.
 };
 
 }  // namespace terra::chaos

@@ -34,6 +34,18 @@ std::int32_t OneOf(Attacker& attacker,
   return values.begin()[attacker.Pick(0, static_cast<int>(values.size()) - 1)];
 }
 
+// Where counts stand in the messages of the deployed bus differs, so any four
+// bytes behind the fingerprint are one.
+std::vector<Datagram> HostileNumber(Attacker& attacker) {
+  Attacker::Message message = attacker.Good();
+  const int last = static_cast<int>(message.payload.size()) - 4;
+  Overwrite(message.payload, static_cast<std::size_t>(attacker.Pick(8, last)),
+            OneOf(attacker,
+                  {-1, 500'000'000, std::numeric_limits<std::int32_t>::max(),
+                   std::numeric_limits<std::int32_t>::min()}));
+  return {attacker.Say(message)};
+}
+
 // Payload of an advice message of so many bytes, good but for its length.
 Bytes LongAdvice(Attacker& attacker, std::size_t bytes) {
   advice_t advice = attacker.Honest();
@@ -60,23 +72,25 @@ std::vector<Datagram> Garbage(Attacker& attacker) {
 }
 
 std::vector<Datagram> Truncated(Attacker& attacker) {
-  Bytes bytes = Attacker::Bytes(attacker.Honest());
-  bytes.resize(static_cast<std::size_t>(
-      attacker.Pick(0, static_cast<int>(bytes.size()) - 1)));
-  return {attacker.Say(bytes)};
+  Attacker::Message message = attacker.Good();
+  message.payload.resize(static_cast<std::size_t>(
+      attacker.Pick(0, static_cast<int>(message.payload.size()) - 1)));
+  return {attacker.Say(message)};
 }
 
 std::vector<Datagram> BitFlips(Attacker& attacker) {
-  Bytes bytes = Attacker::Bytes(attacker.Honest());
+  Attacker::Message message = attacker.Good();
+  Bytes& bytes = message.payload;
   for (int flips = attacker.Pick(1, 3); flips > 0; --flips) {
     const int bit = attacker.Pick(0, static_cast<int>(8 * bytes.size()) - 1);
     bytes[static_cast<std::size_t>(bit / 8)] ^=
         static_cast<std::uint8_t>(1 << (bit % 8));
   }
-  return {attacker.Say(bytes)};
+  return {attacker.Say(message)};
 }
 
 std::vector<Datagram> HostileCounts(Attacker& attacker) {
+  if (attacker.attacks_deployed_bus()) return HostileNumber(attacker);
   const advice_t advice = attacker.Honest();
   Bytes bytes = Attacker::Bytes(advice);
   Overwrite(bytes, CountOffset(advice),
@@ -87,6 +101,7 @@ std::vector<Datagram> HostileCounts(Attacker& attacker) {
 }
 
 std::vector<Datagram> HostileStrings(Attacker& attacker) {
+  if (attacker.attacks_deployed_bus()) return HostileNumber(attacker);
   const advice_t advice = attacker.Honest();
   Bytes bytes = Attacker::Bytes(advice);
   if (attacker.OneIn(4)) {
@@ -100,16 +115,17 @@ std::vector<Datagram> HostileStrings(Attacker& attacker) {
 }
 
 std::vector<Datagram> VersionSkew(Attacker& attacker) {
-  Bytes bytes = Attacker::Bytes(attacker.Honest());
+  Attacker::Message message = attacker.Good();
+  Bytes& bytes = message.payload;
   for (std::size_t i = 0; i < 8; ++i) {
     bytes[i] = static_cast<std::uint8_t>(attacker.Pick(0, 255));
   }
   if (attacker.OneIn(2)) bytes.resize(bytes.size() + 4);  // one more field
-  return {attacker.Say(bytes)};
+  return {attacker.Say(message)};
 }
 
 std::vector<Datagram> NoChannelEnd(Attacker& attacker) {
-  const std::string& name = attacker.channel(bus::Channel::kAdvice);
+  const std::string& name = attacker.AttackedChannel();
   Datagram datagram = WholeMessage(attacker.NextSequence(), name, {});
   datagram.pop_back();
   if (attacker.OneIn(2)) datagram.insert(datagram.end(), 100, 'A');
@@ -117,7 +133,7 @@ std::vector<Datagram> NoChannelEnd(Attacker& attacker) {
 }
 
 std::vector<Datagram> Oversize(Attacker& attacker) {
-  const std::string& name = attacker.channel(bus::Channel::kAdvice);
+  const std::string& name = attacker.AttackedChannel();
   const std::int32_t size =
       OneOf(attacker, {61'000, 131'072, 400'000, 1'000'000});
   const Bytes payload = LongAdvice(attacker, static_cast<std::size_t>(size));
@@ -127,7 +143,7 @@ std::vector<Datagram> Oversize(Attacker& attacker) {
 
 std::vector<Datagram> HalfFragments(Attacker& attacker) {
   constexpr std::size_t kSize = 100;
-  const std::string& name = attacker.channel(bus::Channel::kAdvice);
+  const std::string& name = attacker.AttackedChannel();
   const Bytes payload = Attacker::Bytes(attacker.Honest());
   std::vector<Datagram> all =
       Fragments(attacker.NextSequence(), name, payload, kSize);
@@ -146,7 +162,7 @@ std::vector<Datagram> HalfFragments(Attacker& attacker) {
 }
 
 std::vector<Datagram> OffsetWrap(Attacker& attacker) {
-  const std::string& name = attacker.channel(bus::Channel::kAdvice);
+  const std::string& name = attacker.AttackedChannel();
   FragmentHeader header;
   header.sequence = attacker.NextSequence();
   header.message_bytes = 1'000;
@@ -158,7 +174,7 @@ std::vector<Datagram> OffsetWrap(Attacker& attacker) {
 }
 
 std::vector<Datagram> SlowDrip(Attacker& attacker) {
-  const std::string& name = attacker.channel(bus::Channel::kAdvice);
+  const std::string& name = attacker.AttackedChannel();
   FragmentHeader header;
   // One message for ever: the first fragment again and again, then any other.
   header.sequence = 0x7fffffff;

@@ -33,6 +33,7 @@ ChaosNode::ChaosNode(ChaosOptions options, Attacker attacker, bus::Outbox& out,
       pace_(PeriodOf(options_.rate)) {
   for (const Fault* fault : options_.faults) tallies_[fault->name];
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
+    OverhearDeployed(message);
     learned_ = !map_.OnHeader(message, now) && learned_;
   });
   Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
@@ -43,11 +44,30 @@ ChaosNode::ChaosNode(ChaosOptions options, Attacker attacker, bus::Outbox& out,
         message.waypoint_x.size() < 2) {
       return;
     }
+    OverhearDeployed(message);
     learned_ = learned_ && message.baseline_digest == baseline_.baseline_digest;
     baseline_ = message;
   });
   Listen<verdict_t>([this](const verdict_t& message, bus::Time) {
+    OverhearDeployed(message);
     OnVerdict(message);
+  });
+  ListenOnly<terra_msg::plan_request_t>();
+  ListenOnly<terra_msg::deployed_t>();
+  ListenOnly<terra_msg::pose_t>();
+  ListenOnly<terra_msg::status_t>();
+}
+
+template <typename T>
+void ChaosNode::OverhearDeployed(const T& message) {
+  attacker_.OverhearDeployed(
+      {bus::MessageTraits<T>::kChannel, bus::Encode(message)});
+}
+
+template <typename T>
+void ChaosNode::ListenOnly() {
+  Listen<T>([this](const T& message, bus::Time) {
+    OverhearDeployed(message);
   });
 }
 

@@ -59,6 +59,10 @@ class ChaosNode : public bus::Node {
  private:
   void Misbehave();
   void OnVerdict(const terra_msg::verdict_t& verdict);
+  template <typename T>
+  void OverhearDeployed(const T& message);
+  template <typename T>
+  void ListenOnly();
 
   ChaosOptions options_;
   Attacker attacker_;

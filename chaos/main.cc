@@ -73,8 +73,10 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "ends after so many misdeeds (0 = never)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--to", arguments.to,
-                 "the port that is attacked. The deployed bus is trusted: see "
-                 "docs/deployment.md for what an attack on it can do")
+                 "the port that is attacked. On the deployed one the faults of "
+                 "bytes spoil what was overheard there, of every channel; it "
+                 "is trusted: see docs/deployment.md for what an attack on it "
+                 "can do")
       ->check(CLI::IsMember({"advice", "deployed"}));
   app.callback([&arguments] {
     ChooseFaults(arguments);
@@ -106,7 +108,8 @@ Result<std::unique_ptr<terra::bus::Node>> MakeNode(
   auto node = std::make_unique<ChaosNode>(
       arguments.chaos,
       terra::chaos::Attacker({context.name, context.out.session(),
-                              context.channels, arguments.seed}),
+                              context.channels, arguments.seed,
+                              arguments.to == "deployed"}),
       context.out, send);
   ChaosNode* listener = node.get();
   AdviceReceiver& receiver = *connections.overheard;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <variant>
 
 namespace terra::logger {
@@ -18,6 +19,24 @@ double RequestStory::saving_percent() const {
                                last->baseline_cost
                          : std::nan("");
 }
+
+namespace {
+
+// Requests of the state that a part begins with: what is said of them there
+// was said before, nobody knows when.
+std::set<std::int64_t> AskedBefore(const LogContents& contents) {
+  std::set<std::int64_t> ids;
+  const auto add = [&](const auto& logged) {
+    if (logged.index < contents.state_end) {
+      ids.insert(logged.message.request_id);
+    }
+  };
+  for (const auto& [id, request] : contents.requests) add(request);
+  for (const auto& [name, baseline] : contents.baselines) add(baseline);
+  return ids;
+}
+
+}  // namespace
 
 std::vector<RequestStory> Stories(const LogContents& contents) {
   std::map<std::int64_t, RequestStory> stories;
@@ -45,6 +64,11 @@ std::vector<RequestStory> Stories(const LogContents& contents) {
         story.last_us = logged.time_us;
       }
     }
+  }
+  for (const std::int64_t id : AskedBefore(contents)) {
+    RequestStory& story = stories[id];
+    story.asked_us = story.baseline_us = 0;
+    story.baseline_deployed_us = story.refined_us = 0;
   }
   std::vector<RequestStory> in_order;
   for (auto& [id, story] : stories) {

@@ -403,6 +403,52 @@ TEST(Faults, HostileCountsAreNegativeHugeAndOneTooMany) {
   EXPECT_EQ(complaints.size(), 5U) << "and one waypoint too many";
 }
 
+// An attacker of the deployed bus that overheard two messages there.
+Attacker DeployedBusAttacker() {
+  Attacker attacker({"chaos", kOwnSession, bus::ChannelNames(), 1, true});
+  const bus::MapPtr map = WalledMap();
+  attacker.Learn(PlannedBaseline(*map, 11), map);
+  terra_msg::plan_request_t request{};
+  request.request_id = 11;
+  attacker.OverhearDeployed(
+      {bus::Channel::kBaseline, bus::Encode(PlannedBaseline(*map, 11))});
+  attacker.OverhearDeployed({bus::Channel::kPlanRequest, bus::Encode(request)});
+  return attacker;
+}
+
+TEST(Faults, OnTheDeployedBusTheyAreOfWhatWasOverheardThere) {
+  Attacker attacker = DeployedBusAttacker();
+  const baseline_t baseline = PlannedBaseline(*WalledMap(), 11);
+  for (const char* name : {"truncated", "bit-flips", "hostile-counts",
+                           "hostile-strings", "version-skew"}) {
+    std::set<std::string> channels;
+    for (int i = 0; i < 200; ++i) {
+      const Datagram datagram = FindFault(name)->make(attacker).at(0);
+      const auto message = bus::ParseLcmDatagram(datagram);
+      ASSERT_TRUE(message) << name;
+      channels.emplace(message->channel);
+      const std::vector<std::uint8_t> payload(message->payload.begin(),
+                                              message->payload.end());
+      EXPECT_NE(payload, bus::Encode(baseline)) << name;
+    }
+    EXPECT_EQ(channels,
+              (std::set<std::string>{"TERRA_BASELINE", "TERRA_PLAN_REQUEST"}))
+        << name;
+  }
+}
+
+TEST(Faults, OnTheDeployedBusTheyAreOnEveryChannel) {
+  Attacker attacker = DeployedBusAttacker();
+  std::set<std::string> channels;
+  for (int i = 0; i < 400; ++i) {
+    const auto message =
+        bus::ParseLcmDatagram(FindFault("oversize")->make(attacker).at(0));
+    if (message) channels.emplace(message->channel);
+    channels.insert(attacker.AttackedChannel());
+  }
+  EXPECT_EQ(std::ssize(channels), bus::kNumChannels);
+}
+
 TEST(Faults, TheSameSeedMisbehavesTheSame) {
   for (const Fault& fault : AllFaults()) {
     Attacker one = InformedAttacker(5);

@@ -8,9 +8,6 @@ WARM_UP = 0.25  # this share of a life is not compared
 SHORTEST_LIFE_S = 40.0
 RSS_GROWTH = 1.10
 RSS_SLACK_KB = 2_048
-# What a log may lack when datagrams were lost before the logger could hear
-# them, or when it was killed: its own figures must show that they were.
-BY_LOSS = {"gap", "missing input"}
 
 
 def percentile(values, share):
@@ -63,7 +60,7 @@ def audit_logs(terra, folder):
             sums[key] += audit[key]
         sums["notes"] += len(audit["notes"])
         for finding in audit["findings"]:
-            if _explained(finding, info):
+            if _explained(finding, audit, info):
                 kind = finding["kind"]
                 sums["explained"][kind] = sums["explained"].get(kind, 0) + 1
             else:
@@ -80,9 +77,15 @@ def _json(command):
         return None
 
 
-def _explained(finding, info):
-    if finding["kind"] == "damage":
+def _explained(finding, audit, info):
+    kind, what = finding["kind"], finding["what"]
+    if kind == "damage":
         # Killed between a write and its seal.
-        return not info["closed"] and "have no seal" in finding["what"]
-    missing = sum(channel.get("missing", 0) for channel in info["channels"].values())
-    return finding["kind"] in BY_LOSS and missing > 0
+        return not info["closed"] and "have no seal" in what
+    lost = {name: channel.get("missing", 0) for name, channel in info["channels"].items()}
+    if kind == "gap":
+        return lost.get("TERRA_VERDICT", 0) + lost.get("TERRA_DEPLOYED", 0) > 0
+    if kind == "missing input" and "ADVICE" in what:
+        return lost.get("TERRA_ADVICE", 0) > 0
+    # It may stand in the log before, where this one begins in mid-run.
+    return kind == "missing input" and audit["anchors"] > 0

@@ -102,12 +102,10 @@ void ServeRequest(Robot& robot, std::int64_t id, Cell start, Cell goal) {
         return message.request_id == id;
       });
   ASSERT_TRUE(baseline);
-  // The lie is told once, and the gate judges no advice whose baseline it does
-  // not hold yet.
+  // Advice for a baseline that the gate has not heard of gets no verdict.
   ASSERT_TRUE(
-      robot.deployed_bus().WaitFor<deployed_t>([id](const deployed_t& message) {
-        return message.request_id == id &&
-               message.mode != deployed_t::MODE_NONE;
+      robot.deployed_bus().WaitFor<deployed_t>([&](const deployed_t& deployed) {
+        return deployed.baseline_digest == baseline->baseline_digest;
       }));
   advice_t lie = AdviceOf("liar", *baseline);
   bus::SetWaypoints(lie, {start, {400, 3}, goal});

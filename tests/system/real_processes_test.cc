@@ -21,7 +21,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using terra_msg::advice_t;
-using terra_msg::baseline_t;
 using terra_msg::deployed_t;
 using terra_msg::status_t;
 using terra_msg::verdict_t;
@@ -197,15 +196,16 @@ TEST(RealProcesses, LyingAdviceIsRefusedByName) {
   Robot robot(BarMap(11));  // The bar is an obstacle.
   StartDeployedPath(robot);
   ASSERT_TRUE(robot.Ask(11, kStart, kGoal));
-  const auto baseline =
-      robot.deployed_bus().WaitFor<baseline_t>([](const baseline_t& message) {
-        return message.request_id == 11;
+  // Advice for a baseline that the gate has not heard of gets no verdict.
+  const auto deployed =
+      robot.deployed_bus().WaitFor<deployed_t>([](const deployed_t& message) {
+        return message.mode == deployed_t::MODE_BASELINE;
       });
-  ASSERT_TRUE(baseline);
+  ASSERT_TRUE(deployed);
   advice_t advice{};
   advice.request_id = 11;
-  advice.map_id = baseline->map_id;
-  advice.baseline_digest = baseline->baseline_digest;
+  advice.map_id = deployed->map_id;
+  advice.baseline_digest = deployed->baseline_digest;
   advice.anchor_x = kStart.x;
   advice.anchor_y = kStart.y;
   advice.advisor = "liar";

@@ -168,10 +168,10 @@ void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
 
 struct HttpTransport::State {
   struct CloseEasy {
-    void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
+    void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
   };
   struct CloseMulti {
-    void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
+    void operator()(CURLM* handle) const { curl_multi_cleanup(handle); }
   };
 
   std::unique_ptr<CURLM, CloseMulti> multi{curl_multi_init()};

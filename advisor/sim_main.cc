@@ -65,15 +65,19 @@ int Serve(int port, const std::string& port_file, double latency_s) {
     std::cerr << "terra-llm-sim: cannot listen on port " << port << "\n";
     return 1;
   }
+  if (!port_file.empty()) {
+    // The port is open already: who connects now waits for the thread below.
+    const auto written =
+        terra::WriteWholeFile(port_file, std::to_string(bound) + "\n");
+    if (!written) {
+      std::cerr << "terra-llm-sim: " << written.error().message << "\n";
+      return 1;
+    }
+  }
   std::thread serving([&server] {
     server.listen_after_bind();
   });
   std::cout << "http://" << host << ":" << bound << std::endl;
-  if (!port_file.empty()) {
-    const auto written =
-        terra::WriteWholeFile(port_file, std::to_string(bound) + "\n");
-    if (!written) std::cerr << written.error().message << "\n";
-  }
   int signal = 0;
   sigwait(&signals, &signal);
   server.stop();

@@ -110,6 +110,9 @@ void PrintJson(const Advised& advised) {
       {"baseline", JsonRoute(advised.baseline)},
       {"model", advised.answer.model},
       {"simulated", advised.answer.simulated},
+      {"tokens_in", advised.answer.tokens_in},
+      {"tokens_out", advised.answer.tokens_out},
+      {"spend_usd", advised.answer.spend_usd},
       {"answer", advised.answer.answer_text},
       {"error", advised.answer.error},
       {"seconds", advised.seconds}};
@@ -135,7 +138,10 @@ void PrintAnswer(const AdviceAnswer& answer) {
   }
   if (!answer.model.empty()) {
     std::cout << "model      " << answer.model << ", " << answer.tokens_in
-              << " tokens in, " << answer.tokens_out << " out\n"
+              << " tokens in, " << answer.tokens_out << " out"
+              << (answer.spend_usd > 0 ? Printed(", $%.4f", answer.spend_usd)
+                                       : "")
+              << "\n"
               << "answer     " << Shown(answer.answer_text) << "\n";
   }
   if (!answer.error.empty()) std::cout << "reason     " << answer.error << "\n";

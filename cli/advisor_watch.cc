@@ -41,6 +41,14 @@ bool AdvisorWatch::AllGaveUp() const {
          });
 }
 
+std::string AdvisorWatch::ErrorOf(const std::string& name) const {
+  const std::string printable = Printable(name, kLongestName);
+  for (const auto& [key, advisor] : advisors_) {
+    if (advisor.name == printable) return advisor.error;
+  }
+  return "";
+}
+
 std::vector<AdvisorWatch::Advisor> AdvisorWatch::advisors() const {
   std::vector<Advisor> all;
   for (const auto& [key, advisor] : advisors_) all.push_back(advisor);

@@ -31,6 +31,9 @@ class AdvisorWatch {
   };
   std::vector<Advisor> advisors() const;
 
+  /// Why the advisor's last answer was none; empty where no heartbeat told.
+  std::string ErrorOf(const std::string& name) const;
+
  private:
   std::map<std::string, Advisor> advisors_;  ///< By name and host.
 };

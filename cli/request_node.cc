@@ -10,6 +10,8 @@ using terra_msg::deployed_t;
 
 // A picture wants the map; no set takes longer to send one.
 constexpr bus::Duration kMapPatience = std::chrono::seconds(20);
+// Two heartbeats, of which the second surely follows the answer.
+constexpr bus::Duration kReasonPatience = std::chrono::milliseconds(2'500);
 constexpr std::size_t kMaxKeptVerdicts = 1'000;
 
 }  // namespace
@@ -35,8 +37,8 @@ RequestNode::RequestNode(const RequestPlan& plan, bus::Outbox& out)
   Listen<deployed_t>([this](const auto& message, bus::Time now) {
     OnDeployed(message, now);
   });
-  Listen<terra_msg::verdict_t>([this](const auto& message, bus::Time) {
-    OnVerdict(message);
+  Listen<terra_msg::verdict_t>([this](const auto& message, bus::Time now) {
+    OnVerdict(message, now);
   });
   Listen<terra_msg::status_t>([this](const auto& message, bus::Time) {
     if (baseline_) advisors_.OnStatus(message);
@@ -64,10 +66,16 @@ void RequestNode::OnDeployed(const deployed_t& message, bus::Time now) {
   }
 }
 
-void RequestNode::OnVerdict(const terra_msg::verdict_t& message) {
-  if (message.request_id == plan_.request_id &&
-      verdicts_.size() < kMaxKeptVerdicts) {
-    verdicts_.push_back(message);
+void RequestNode::OnVerdict(const terra_msg::verdict_t& message,
+                            bus::Time now) {
+  if (message.request_id != plan_.request_id ||
+      verdicts_.size() >= kMaxKeptVerdicts) {
+    return;
+  }
+  verdicts_.push_back(message);
+  if (message.code == terra_msg::verdict_t::CODE_PARSE_ERROR) {
+    advisors_ = {};  // What was heard before is not of this answer.
+    reason_until_ = now + kReasonPatience;
   }
 }
 
@@ -87,16 +95,25 @@ bool RequestNode::advised() const {
          });
 }
 
+// Was an answer judged and not taken, and told why, if that can be told?
+bool RequestNode::Refused(bus::Time now) const {
+  const auto untold = [&](const auto& verdict) {
+    return verdict.code == terra_msg::verdict_t::CODE_PARSE_ERROR &&
+           now < reason_until_ && advisors_.ErrorOf(verdict.advisor).empty();
+  };
+  return std::any_of(
+      verdicts_.begin(), verdicts_.end(), [&](const auto& verdict) {
+        return verdict.subject == terra_msg::verdict_t::SUBJECT_ADVICE &&
+               verdict.code != terra_msg::verdict_t::CODE_ACCEPTED &&
+               !untold(verdict);
+      });
+}
+
 // Nothing more is to be waited for.
-bool RequestNode::Settled() const {
+bool RequestNode::Settled(bus::Time now) const {
   if (!Answered()) return false;
   if (baseline_->status != baseline_t::STATUS_OK) return true;
-  const bool refused =
-      std::any_of(verdicts_.begin(), verdicts_.end(), [](const auto& verdict) {
-        return verdict.subject == terra_msg::verdict_t::SUBJECT_ADVICE &&
-               verdict.code != terra_msg::verdict_t::CODE_ACCEPTED;
-      });
-  return refined_ms_.has_value() || refused || advisors_.AllGaveUp();
+  return refined_ms_.has_value() || Refused(now) || advisors_.AllGaveUp();
 }
 
 double RequestNode::MillisecondsSinceStart(bus::Time now) const {
@@ -110,7 +127,7 @@ bus::Time RequestNode::Advance(bus::Time now) {
       !plan_.want_map || !HasRoute() || map_.map() != nullptr;
   const bool time_is_up = now >= started_at_ + plan_.wait;
   const bool map_time_is_up = now >= started_at_ + plan_.wait + kMapPatience;
-  if (!plan_.keep && (Settled() || time_is_up) &&
+  if (!plan_.keep && (Settled(now) || time_is_up) &&
       (map_is_here || map_time_is_up)) {
     done_ = true;
   }

@@ -62,9 +62,10 @@ class RequestNode : public bus::Node {
  private:
   void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
   void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);
-  void OnVerdict(const terra_msg::verdict_t& message);
+  void OnVerdict(const terra_msg::verdict_t& message, bus::Time now);
   bool Answered() const;
-  bool Settled() const;
+  bool Refused(bus::Time now) const;
+  bool Settled(bus::Time now) const;
   double MillisecondsSinceStart(bus::Time now) const;
 
   RequestPlan plan_;
@@ -79,6 +80,7 @@ class RequestNode : public bus::Node {
   std::optional<terra_msg::deployed_t> deployed_;
   std::vector<terra_msg::verdict_t> verdicts_;
   AdvisorWatch advisors_;
+  bus::Time reason_until_{};  ///< Until then a heartbeat may tell the reason.
   Latency baseline_ms_;
   Latency deployed_ms_;
   Latency refined_ms_;

@@ -16,6 +16,9 @@ namespace {
 using terra_msg::baseline_t;
 using terra_msg::deployed_t;
 
+// Names come from the bus.
+constexpr std::size_t kShownName = 63;
+
 std::string_view BaselineStatus(std::int8_t status) {
   switch (status) {
     case baseline_t::STATUS_OK:
@@ -119,7 +122,8 @@ void PrintRequest(const RequestNode& node) {
   const deployed_t& deployed = *node.deployed();
   if (node.baseline()) {
     std::printf("baseline   %10.3f   %s, %.2f ms after the request\n",
-                deployed.baseline_cost, node.baseline()->planner.c_str(),
+                deployed.baseline_cost,
+                Printable(node.baseline()->planner, kShownName).c_str(),
                 node.baseline_ms().value_or(0));
   } else {
     std::printf("baseline   %10.3f   heard by the gate alone\n",
@@ -127,7 +131,7 @@ void PrintRequest(const RequestNode& node) {
   }
   std::printf(
       "deployed   %10.3f   %s%s\n", deployed.deployed_cost,
-      deployed.source.c_str(),
+      Printable(deployed.source, kShownName).c_str(),
       deployed.mode == deployed_t::MODE_CANDIDATE ? "'s route" : "'s baseline");
   std::printf("saving     %10.3f   %.2f %%\n",
               deployed.baseline_cost - deployed.deployed_cost,
@@ -140,9 +144,15 @@ void PrintRequest(const RequestNode& node) {
     std::printf(", no refined route\n");
   }
   for (const terra_msg::verdict_t& verdict : node.verdicts()) {
-    std::printf("verdict    %s on %s, attempt %lld\n",
-                CodeText(verdict).c_str(), verdict.advisor.c_str(),
-                static_cast<long long>(verdict.attempt));
+    const std::string reason =
+        verdict.code == terra_msg::verdict_t::CODE_PARSE_ERROR
+            ? node.advisors().ErrorOf(verdict.advisor)
+            : "";
+    std::printf("verdict    %s on %s, attempt %lld%s%s\n",
+                CodeText(verdict).c_str(),
+                Printable(verdict.advisor, kShownName).c_str(),
+                static_cast<long long>(verdict.attempt),
+                reason.empty() ? "" : "; ", reason.c_str());
   }
   if (node.verdicts().empty()) PrintWhyNone(node);
 }

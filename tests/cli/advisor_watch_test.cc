@@ -73,6 +73,15 @@ TEST(AdvisorWatchTest, WorkStartsTheCountAnew) {
   EXPECT_FALSE(watch.AllGaveUp());
 }
 
+TEST(AdvisorWatchTest, TellsTheErrorOfOneAdvisor) {
+  AdvisorWatch watch;
+  Hear(watch, Heartbeat("a", "ready", 0, "no_list"), 1);
+  Hear(watch, Heartbeat("b", "ready", 1, "refused"), 1);
+  EXPECT_EQ(watch.ErrorOf("a"), "no_list");
+  EXPECT_EQ(watch.ErrorOf("b"), "refused");
+  EXPECT_EQ(watch.ErrorOf("c"), "");
+}
+
 TEST(AdvisorWatchTest, AFloodOfNamesIsBoundedAndFitForATerminal) {
   AdvisorWatch watch;
   for (int i = 0; i < 1'000; ++i) {

@@ -83,8 +83,38 @@ TEST_F(RequestToAModel, AnyAnswerThatTheGateJudgedIsAdvice) {
       EXPECT_THAT(said.output, HasSubstr(verdict));
     }
   }
+  EXPECT_THAT(Request().output, HasSubstr("; no_list"))
+      << "why it could not be read";
   EXPECT_THAT(model_->output(), HasSubstr("SIMULATED"))
       << "said at the start of whoever answers on this machine";
+}
+
+TEST_F(RequestToAModel, WhatACallCostsIsSaidWithoutTheBusToo) {
+  testing::ScriptedReply yes;  // 1,000 tokens in, 20 out.
+  yes.body = testing::ReplyBody("openai", "Yes");
+  testing::ScriptedLlmServer server({yes});
+  std::vector<std::string> advise = {testing::ProgramPath("terra"),
+                                     "advise",
+                                     "--map",
+                                     robot_.map_path(),
+                                     "--start",
+                                     "5,60",
+                                     "--goal",
+                                     "155,60",
+                                     "--stride",
+                                     "20",
+                                     "--backend",
+                                     "openai",
+                                     "--base-url",
+                                     server.url(),
+                                     "--price",
+                                     "gpt-5.5=10:500"};
+  const auto said = testing::RunToEnd(advise);
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_THAT(said.output, HasSubstr("1000 tokens in, 20 out, $0.0200"));
+  advise.push_back("--json");
+  EXPECT_THAT(testing::RunToEnd(advise).output,
+              HasSubstr("\"spend_usd\":0.02"));
 }
 
 }  // namespace

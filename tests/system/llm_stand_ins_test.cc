@@ -93,6 +93,13 @@ TEST_F(SimulatedModel, SpeaksTheFormsOfAllProvidersAndReadsAllPictures) {
   }
 }
 
+TEST_F(SimulatedModel, WithoutItsPortFileItDoesNotServe) {
+  const auto ended =
+      testing::RunToEnd({testing::ProgramPath("terra-llm-sim"), "--port-file",
+                         robot_.folder().Path("no/such/folder/port")});
+  EXPECT_EQ(ended.exit_code, 1);
+}
+
 TEST_F(SimulatedModel, RefusesWhatIsNoQuestionAndGoesOn) {
   advisor::HttpTransport http;
   const auto status = [&](const std::string& path, const std::string& body) {

@@ -13,6 +13,10 @@
 // the answers come back in files, and become a recording to replay.
 namespace terra::benchmark {
 
+/// The file in a batch's folder with its requests, each a record without an
+/// answer.
+inline constexpr const char* kOpenRequestsName = "open.jsonl";
+
 /// Where a batch is written, and what of it.
 struct BatchFolder {
   std::string path;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "benchmark/comparison.h"
+#include "benchmark/measured_columns.h"
 #include "benchmark/run_labels.h"
 
 namespace terra::benchmark {
@@ -22,51 +24,97 @@ bool HasCandidates(const LoadedRun& run) {
   return SettingOf(run, "candidates", "1") != "1";
 }
 
+// Without an interval.
+TableCell StrictIsr(const MeasuredRow& row) {
+  return PercentCell(row.metrics.strict_isr).text;
+}
+
+TableCell NumCandidates(const MeasuredRow& row) {
+  return HasCandidates(row.run) ? CountCell(row.metrics.candidates)
+                                : TableCell("-");
+}
+
+std::vector<TableCell> PairedRow(const LoadedRun& run, const Comparison& c) {
+  return {
+      RowTitle(run),
+      CountCell(c.cases),
+      CountCell(c.only_first_lower),
+      CountCell(c.only_second_lower),
+      c.mcnemar_p < 1e-4 ? TableCell("< 0.0001") : NumberCell(c.mcnemar_p, 4),
+      PercentCell(c.mogr_difference)};
+}
+
+bool AsksSeveralTimes(const LoadedRun& run) {
+  return run.description.repeats > 1;
+}
+
+// Of runs that ask once a dash.
+MeasuredColumn RepeatsColumn(const std::string& name,
+                             double RepeatFigures::*share) {
+  return {{name}, [share](const MeasuredRow& row) {
+            return AsksSeveralTimes(row.run)
+                       ? NumberCell(100 * row.repeats.*share, 2)
+                       : TableCell("-");
+          }};
+}
+
+void AddRepeatsColumns(MeasuredColumns& columns) {
+  columns.push_back({{"Repeats"}, [](const MeasuredRow& row) {
+                       return CountCell(row.run.description.repeats);
+                     }});
+  columns.push_back(
+      RepeatsColumn("FIR over repeats %", &RepeatFigures::mean_lower));
+  columns.push_back(
+      RepeatsColumn("Cases that vary %", &RepeatFigures::unstable));
+}
+
 }  // namespace
 
 Table ProposalTable(const std::vector<LoadedRun>& runs,
                     const std::string& group) {
+  MeasuredColumns columns = {
+      MethodColumn(),
+      PathsColumn(),
+      CountColumn("No baseline", &Metrics::without_baseline),
+      CountColumn("N_NoAnswer", &Metrics::no_answer),
+      CountColumn("N_Invalid", &Metrics::invalid),
+      AsrColumn(),
+      IsrColumn(),
+      {{"ISR strict %"}, StrictIsr},
+      VnsrColumn(),
+      GapRateColumn(),
+      MeanGapColumn(),
+      MogrColumn()};
+  if (std::any_of(runs.begin(), runs.end(), HasCandidates)) {
+    columns.push_back({{"Candidates"}, NumCandidates});
+    columns.push_back(
+        PercentColumn("ASR per candidate %", &Metrics::candidate_asr));
+    columns.push_back(
+        PercentColumn("ISR per candidate %", &Metrics::candidate_isr));
+  }
+  const bool repeated = std::any_of(runs.begin(), runs.end(), AsksSeveralTimes);
+  if (repeated) AddRepeatsColumns(columns);
   Table table;
   table.id = "proposals-" + group;
   table.title = "Proposal quality and recovery, " + group + " subset";
-  table.columns = {
-      {"Method"},           {"N_Path"},           {"No baseline"},
-      {"N_NoAnswer"},       {"N_Invalid"},        {"ASR %", true},
-      {"ISR %", true},      {"ISR strict %"},     {"VNSR %", true},
-      {"Gap rate %", true}, {"Mean gap %", true}, {"MOGR %", true}};
-  const bool several = std::any_of(runs.begin(), runs.end(), HasCandidates);
-  if (several) {
-    table.columns.push_back({"Candidates"});
-    table.columns.push_back({"ASR per candidate %", true});
-    table.columns.push_back({"ISR per candidate %", true});
-  }
+  table.columns = HeadsOf(columns);
   TableBlock block;
-  for (const LoadedRun& run : runs) {
-    const Metrics m = MetricsOf(run, group);
-    if (m.paths == 0) continue;
-    TableCell strict = PercentCell(m.strict_isr);
-    strict.low.clear();
-    block.rows.push_back({RowTitle(run), CountCell(m.paths),
-                          CountCell(m.without_baseline), CountCell(m.no_answer),
-                          CountCell(m.invalid), PercentCell(m.asr),
-                          PercentCell(m.isr), strict, PercentCell(m.vnsr),
-                          PercentCell(m.gap_rate), PercentCell(m.mean_gap),
-                          PercentCell(m.mogr)});
-    if (!several) continue;
-    auto& row = block.rows.back();
-    row.emplace_back(HasCandidates(run) ? CountCell(m.candidates) : "-");
-    row.push_back(PercentCell(m.candidate_asr));
-    row.push_back(PercentCell(m.candidate_isr));
-  }
+  for (const LoadedRun& run : runs) AddRow(run, group, columns, block);
   table.blocks.push_back(std::move(block));
   table.notes = {kIntervalNote,
                  "ISR strict counts answers that were read but not in the "
                  "exact form as invalid. MOGR is for methods with fallback."};
+  if (repeated) {
+    table.notes.emplace_back(
+        "All other columns are of the first repeat. FIR over repeats: mean "
+        "over the cases of the share of repeats that were lower. Cases that "
+        "vary: lower in some repeats and not in others.");
+  }
   return table;
 }
 
-Table PairedTable(const std::vector<LoadedRun>& runs,
-                  const std::string& group) {
+Result<Table> PairedTable(const std::vector<LoadedRun>& runs,
+                          const std::string& group) {
   Table table;
   table.id = "paired-" + group;
   table.columns = {{"Method"},          {"Cases"},
@@ -77,18 +125,12 @@ Table PairedTable(const std::vector<LoadedRun>& runs,
     const LoadedRun& reference = runs.front();
     table.title =
         "Paired by case against: " + RowTitle(reference) + " (" + group + ")";
-    const std::vector<Score> others = ScoresOfGroup(reference, group);
     for (std::size_t i = 1; i < runs.size(); ++i) {
-      const Comparison c =
-          ComparePaired(ScoresOfGroup(runs[i], group), runs[i].description.rule,
-                        others, reference.description.rule);
-      if (c.cases == 0) continue;
-      block.rows.push_back({RowTitle(runs[i]), CountCell(c.cases),
-                            CountCell(c.only_first_lower),
-                            CountCell(c.only_second_lower),
-                            c.mcnemar_p < 1e-4 ? TableCell("< 0.0001")
-                                               : NumberCell(c.mcnemar_p, 4),
-                            PercentCell(c.mogr_difference)});
+      const Result<Comparison> c = ComparePaired(
+          ReaderOfGroup(runs[i], group), runs[i].description.rule,
+          ReaderOfGroup(reference, group), reference.description.rule);
+      if (!c.ok()) return c.error();
+      if (c->cases > 0) block.rows.push_back(PairedRow(runs[i], *c));
     }
   }
   table.blocks.push_back(std::move(block));
@@ -99,24 +141,25 @@ Table PairedTable(const std::vector<LoadedRun>& runs,
 }
 
 Table JointsTable(const std::vector<LoadedRun>& runs) {
+  const MeasuredColumns columns = {
+      {{"Joints"},
+       [](const MeasuredRow& row) {
+         return TableCell(row.run.description.joints);
+       }},
+      GroupColumn(),
+      StrideColumn(),
+      ComparableColumn(),
+      GapRateColumn(),
+      MeanGapColumn()};
   Table table;
   table.id = "joints";
   table.title =
       "Sensitivity to the rule that joins start and goal to the "
       "lattice";
-  table.columns = {{"Joints"},           WordColumn("Subset"),
-                   {"Stride"},           {"N_Comparable"},
-                   {"Gap rate %", true}, {"Mean gap %", true}};
+  table.columns = HeadsOf(columns);
   TableBlock block;
   for (const LoadedRun& run : runs) {
-    if (run.description.method != "coarse") continue;
-    for (const std::string& group : GroupsOf(run)) {
-      const Metrics m = MetricsOf(run, group);
-      block.rows.push_back({run.description.joints, group,
-                            CountCell(run.description.stride),
-                            CountCell(m.comparable), PercentCell(m.gap_rate),
-                            PercentCell(m.mean_gap)});
-    }
+    if (run.description.method == "coarse") AddRows(run, columns, block);
   }
   table.blocks.push_back(std::move(block));
   table.notes = {
@@ -145,12 +188,12 @@ Table RunsTable(const std::vector<LoadedRun>& runs) {
   for (const LoadedRun& run : runs) {
     const RunDescription& d = run.description;
     const std::string recorded = d.recorded.Days();
-    block.rows.push_back(
-        {RowTitle(run), run.folder, DatasetTitle(d) + " " + ShortDigest(d),
-         CountCell(static_cast<std::int64_t>(run.scores.size())),
-         CountCell(d.stride), d.joints, CountCell(d.jobs), d.build_id,
-         d.started.empty() ? "" : d.started.front(),
-         recorded.empty() ? "-" : recorded, d.command_line});
+    block.rows.push_back({RowTitle(run), run.folder,
+                          DatasetTitle(d) + " " + ShortDigest(d),
+                          CountCell(run.num_rows), CountCell(d.stride),
+                          d.joints, CountCell(d.jobs), d.build_id,
+                          d.started.empty() ? "" : d.started.front(),
+                          recorded.empty() ? "-" : recorded, d.command_line});
   }
   table.blocks.push_back(std::move(block));
   if (!runs.empty()) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "advisor/controls.h"
+#include "advisor/prompt.h"
 #include "advisor/refiners.h"
 #include "benchmark/method.h"
 #include "benchmark/single_search.h"
@@ -157,6 +158,19 @@ MethodChoice Choose(std::string_view method, std::string_view backend,
           }};
 }
 
+std::string WhyNoMethod(std::string_view method, std::string_view backend) {
+  if (method == "advisor") {
+    return "no backend '" + std::string(backend) +
+           "' without a model; there are " + Join(RefinerNames());
+  }
+  if (advisor::FindMethod(method)) {
+    return std::string(method) +
+           " asks a model: --backend openai, or another one with a model";
+  }
+  return "no method '" + std::string(method) + "'; there are advisor, " +
+         Join(PlainMethodNames());
+}
+
 }  // namespace
 
 Result<MethodChoice> FindDeterministicMethod(std::string_view method,
@@ -165,16 +179,15 @@ Result<MethodChoice> FindDeterministicMethod(std::string_view method,
   const bool advisor = method == "advisor";
   const std::string_view wanted = advisor ? backend : method;
   for (const NamedPlanner& planner : advisor ? Refiners() : PlainMethods()) {
-    if (planner.name == wanted) {
-      return Choose(method, advisor ? backend : "", planner, gate);
+    if (planner.name != wanted) continue;
+    if (!advisor && !backend.empty()) {
+      return Error{ErrorCode::kInvalid, std::string(method) +
+                                            " takes no backend '" +
+                                            std::string(backend) + "'"};
     }
+    return Choose(method, backend, planner, gate);
   }
-  return Error{ErrorCode::kNotFound,
-               advisor
-                   ? "advisor needs a --backend, not '" + std::string(backend) +
-                         "'; without a model there are " + Join(RefinerNames())
-                   : "no method '" + std::string(method) +
-                         "'; there are advisor, " + Join(PlainMethodNames())};
+  return Error{ErrorCode::kNotFound, WhyNoMethod(method, backend)};
 }
 
 std::vector<std::string> RefinerNames() {

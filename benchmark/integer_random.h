@@ -24,6 +24,9 @@ class IntegerRandom {
     return Mix(state_);
   }
 
+  /// As after `n` more calls of Next.
+  void Skip(std::uint64_t n) { state_ += n * kGamma; }
+
   /// Uniform in [low, high], but for a bias below 2^-32 per unit of the span.
   int In(IntRange range) {
     TERRA_REQUIRE(range.low <= range.high);

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "benchmark/case_result.h"
+#include "benchmark/clustered_mean.h"
 #include "benchmark/statistics.h"
+#include "terrain/result.h"
 
 namespace terra::benchmark {
 
@@ -102,7 +106,37 @@ struct Metrics {
   double spend = 0;
 };
 
-/// Pre: scores of one run; other repeats than 0 are left out.
+/// What reads scores one by one, and as often as it is asked: from a file, in
+/// the order of its rows, or of a list.
+using ScoreReader =
+    std::function<Status(const std::function<void(const Score&)>&)>;
+ScoreReader ReaderOf(std::vector<Score> scores);
+
+/// Gathers the metrics of one row of a table, a case at a time.
+class MetricsBuilder {
+ public:
+  explicit MetricsBuilder(const CountingRule& rule) : rule_(rule) {}
+
+  /// Other repeats than 0 are left out.
+  void Add(const Score& score);
+
+  /// The metrics of what was added; once.
+  Metrics Finish();
+
+ private:
+  void MeasureTimes();
+
+  CountingRule rule_;
+  Metrics metrics_;
+  ClusteredMean acr_;
+  ClusteredMean mean_gap_;
+  ClusteredMean mogr_;
+  std::vector<double> t_prep_;
+  std::vector<double> t_llm_;
+  std::vector<double> t_det_;
+  std::vector<double> t_e2e_;
+};
+
 Metrics ComputeMetrics(const std::vector<Score>& scores,
                        const CountingRule& rule);
 
@@ -113,21 +147,21 @@ struct RepeatFigures {
   double mean_lower = 0;
   double unstable = 0;
 };
-RepeatFigures ComputeRepeats(const std::vector<Score>& scores,
-                             const CountingRule& rule);
+class RepeatsBuilder {
+ public:
+  explicit RepeatsBuilder(const CountingRule& rule) : rule_(rule) {}
 
-/// How two methods differ on the cases that both have.
-struct Comparison {
-  std::int64_t cases = 0;
-  std::int64_t only_first_lower = 0;
-  std::int64_t only_second_lower = 0;
-  double mcnemar_p = 1;  ///< Exact, two-sided, of FIR.
-  /// First minus second; absent without common gaps.
-  std::optional<Estimate> mogr_difference;
+  void Add(const Score& score);
+  RepeatFigures Figures() const;
+
+ private:
+  struct Tally {
+    int repeats = 0;
+    int lower = 0;
+  };
+
+  CountingRule rule_;
+  std::map<std::string, Tally> tallies_;
 };
-Comparison ComparePaired(const std::vector<Score>& first,
-                         const CountingRule& first_rule,
-                         const std::vector<Score>& second,
-                         const CountingRule& second_rule);
 
 }  // namespace terra::benchmark

@@ -12,6 +12,7 @@ namespace terra::benchmark {
 /// `not measured` with the command for every row of the paper that no run here
 /// stands for, then the paper's rows in a block of their own. Runs against a
 /// simulation are marked SIMULATED.
+/// Those on a model's switches are in switch_tables.h.
 ///
 /// Pre: runs that are comparable (WhyNotComparable), but for what the table
 ///      varies.
@@ -19,11 +20,7 @@ Table ComparisonTable(const std::vector<LoadedRun>& runs,
                       const std::string& group);
 /// Varies the stride. MOGR is each run's own.
 Table OracleGapTable(const std::vector<LoadedRun>& runs);
-/// Varies the switches.
-Table AblationTable(const std::vector<LoadedRun>& runs);
 Table RugdTable(const std::vector<LoadedRun>& runs);
 Table LatencyTable(const std::vector<LoadedRun>& runs);
-/// Varies the noise.
-Table NoiseTable(const std::vector<LoadedRun>& runs);
 
 }  // namespace terra::benchmark

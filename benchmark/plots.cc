@@ -114,8 +114,7 @@ std::string MetricPlot(const std::vector<LoadedRun>& runs,
                        const std::string& label) {
   std::vector<DotRow> rows;
   for (const LoadedRun& run : runs) {
-    const Metrics m =
-        ComputeMetrics(ScoresOfGroup(run, group), run.description.rule);
+    const Metrics& m = MetricsOf(run, group);
     if (m.paths == 0 || !(m.*pick)) continue;
     const bool control = run.description.method != "advisor" &&
                          run.description.method != "direct" &&
@@ -168,9 +167,7 @@ std::string GapPlot(const std::vector<LoadedRun>& runs) {
         easy ? "var(--accent,#1f4fe0)" : "var(--accent2,#c2410c)";
     std::map<int, double> gaps;
     for (const LoadedRun& run : runs) {
-      const Metrics m =
-          ComputeMetrics(ScoresOfGroup(run, std::string(SubsetName(subset))),
-                         run.description.rule);
+      const Metrics& m = MetricsOf(run, std::string(SubsetName(subset)));
       if (m.mean_gap) gaps[run.description.stride] = 100 * m.mean_gap->value;
     }
     std::vector<std::pair<double, double>> points;

@@ -14,6 +14,7 @@
 #include "benchmark/rugd.h"
 #include "benchmark/run.h"
 #include "benchmark/run_labels.h"
+#include "benchmark/switch_tables.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
@@ -34,9 +35,13 @@ class ReportWriter {
   explicit ReportWriter(const ReportOptions& options) : options_(options) {}
 
   Status Write(const std::vector<LoadedRun>& runs) {
-    const Selection s = SelectRuns(runs);
+    const Result<Selection> selected = SelectRuns(runs);
+    if (!selected.ok()) return selected.error();
+    const Selection& s = *selected;
     page_.Intro(runs);
-    Comparison(s.comparison);
+    MainComparison(s.comparison);
+    const Status paired = Paired(s.comparison);
+    if (!paired.ok()) return paired;
     Gaps(s);
     page_.Section("Ablation, noise, latency",
                   "Rows of a model are measured by the commands shown, or "
@@ -74,7 +79,7 @@ class ReportWriter {
     outputs_.push_back({"figures/" + name + ".svg", svg});
   }
 
-  void Comparison(const std::vector<LoadedRun>& runs) {
+  void MainComparison(const std::vector<LoadedRun>& runs) {
     page_.Section(
         "Main comparison",
         "Every method on the same cases, scored by the one verifier. With "
@@ -95,15 +100,19 @@ class ReportWriter {
                " subset.",
            MogrPlot(runs, group));
     }
-    // Against the control without a model: gains mean something beside it.
-    std::vector<LoadedRun> ordered = runs;
-    std::stable_partition(ordered.begin(), ordered.end(),
-                          [](const LoadedRun& run) {
-                            return run.description.method == "corridor";
-                          });
+  }
+
+  // Against the control without a model: gains mean something beside it.
+  Status Paired(std::vector<LoadedRun> runs) {
+    std::stable_partition(runs.begin(), runs.end(), [](const LoadedRun& run) {
+      return run.description.method == "corridor";
+    });
     for (const std::string group : {"easy", "hard"}) {
-      Add(PairedTable(ordered, group));
+      const Result<Table> table = PairedTable(runs, group);
+      if (!table.ok()) return table.error();
+      Add(*table);
     }
+    return Done{};
   }
 
   void Gaps(const Selection& s) {

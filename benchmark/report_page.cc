@@ -72,12 +72,12 @@ std::string Fact(const std::string& value, const std::string& label) {
 void ReportPage::Intro(const std::vector<LoadedRun>& runs) {
   std::set<std::string> datasets;
   std::set<std::string> builds;
-  std::size_t rows = 0;
+  std::int64_t rows = 0;
   bool models = false;
   for (const LoadedRun& run : runs) {
     datasets.insert(DatasetTitle(run.description));
     builds.insert(run.description.build_id);
-    rows += run.scores.size();
+    rows += run.num_rows;
     models = models || run.description.asks_model;
   }
   std::string names;

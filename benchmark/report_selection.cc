@@ -13,10 +13,6 @@ constexpr int kPaperStride = 50;
 
 using Runs = std::vector<LoadedRun>;
 
-bool IsAdvisedByModel(const LoadedRun& run) {
-  return run.description.asks_model && run.description.method == "advisor";
-}
-
 template <typename Predicate>
 Runs Select(const Runs& runs, Predicate wanted) {
   Runs selected;
@@ -30,13 +26,13 @@ Runs Select(const Runs& runs, Predicate wanted) {
 template <typename Together>
 Runs LargestSet(const Runs& runs, Together together) {
   Runs best;
-  std::size_t best_rows = 0;
+  std::int64_t best_rows = 0;
   for (const LoadedRun& first : runs) {
     Runs set = Select(runs, [&](const LoadedRun& run) {
       return together(first, run);
     });
-    std::size_t rows = 0;
-    for (const LoadedRun& run : set) rows += run.scores.size();
+    std::int64_t rows = 0;
+    for (const LoadedRun& run : set) rows += run.num_rows;
     if (rows > best_rows) {
       best_rows = rows;
       best = std::move(set);
@@ -70,10 +66,11 @@ bool SameBaselines(const LoadedRun& a, const LoadedRun& b) {
 }
 
 // Runs over different lists of cases on the cases that all have.
-Runs LargestOnCommonCases(const Runs& runs) {
+Result<Runs> LargestOnCommonCases(const Runs& runs) {
   Runs set = LargestSet(runs, SameBaselines);
-  KeepCommonCases(set);
-  const bool any = !set.empty() && !set.front().scores.empty();
+  const Status kept = KeepCommonCases(set);
+  if (!kept.ok()) return kept.error();
+  const bool any = !set.empty() && set.front().num_rows > 0;
   return any ? set : LargestComparable(runs);
 }
 
@@ -135,6 +132,23 @@ void SelectBeside(const LoadedRun& main, const Runs& plain, Selection& s) {
   }));
 }
 
+// Tables whose runs may have different lists of cases.
+Status SelectOnCommonCases(const Runs& generated, Selection& s) {
+  const Result<Runs> latency =
+      LargestOnCommonCases(Select(generated, [](const LoadedRun& run) {
+        return IsPlain(run) && run.description.jobs == 1;
+      }));
+  if (!latency.ok()) return latency.error();
+  const Result<Runs> noise =
+      LargestOnCommonCases(Select(generated, [](const LoadedRun& run) {
+        return IsAdvisedByModel(run) && HasAllSwitchesOn(run);
+      }));
+  if (!noise.ok()) return noise.error();
+  s.latency = WithoutDoubles(*latency);
+  s.noise = WithoutDoubles(*noise);
+  return Done{};
+}
+
 int RowRank(const LoadedRun& run) {
   const RunDescription& d = run.description;
   if (d.method == "coarse") return 0;
@@ -146,7 +160,7 @@ int RowRank(const LoadedRun& run) {
 
 }  // namespace
 
-Selection SelectRuns(const std::vector<LoadedRun>& runs) {
+Result<Selection> SelectRuns(const std::vector<LoadedRun>& runs) {
   const Runs generated = Select(runs, IsGenerated);
   const Runs plain = Select(generated, IsPlain);
   Selection s;
@@ -160,18 +174,12 @@ Selection SelectRuns(const std::vector<LoadedRun>& runs) {
       LargestComparable(Select(Select(runs, IsRugd), [](const LoadedRun& run) {
         return IsPlain(run) && run.description.stride == kPaperStride;
       })));
-  s.latency = WithoutDoubles(
-      LargestOnCommonCases(Select(plain, [](const LoadedRun& run) {
-        return run.description.jobs == 1;
-      })));
   s.ablation = WithoutDoubles(
       LargestComparable(Select(generated, [](const LoadedRun& run) {
         return IsAdvisedByModel(run) && SettingOf(run, "noise", "0") == "0";
       })));
-  s.noise = WithoutDoubles(
-      LargestOnCommonCases(Select(generated, [](const LoadedRun& run) {
-        return IsAdvisedByModel(run) && HasAllSwitchesOn(run);
-      })));
+  const Status selected = SelectOnCommonCases(generated, s);
+  if (!selected.ok()) return selected.error();
   s.others = SelectOthers(runs, s);
   return s;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "benchmark/loaded_run.h"
+#include "terrain/result.h"
 
 namespace terra::benchmark {
 
@@ -25,7 +26,8 @@ struct Selection {
   std::vector<std::vector<LoadedRun>> others;
 };
 
-Selection SelectRuns(const std::vector<LoadedRun>& runs);
+/// Errors: a run that can no longer be read.
+Result<Selection> SelectRuns(const std::vector<LoadedRun>& runs);
 
 /// Puts runs into the order of rows: baseline, models, refiners, methods whose
 /// route stands as returned, controls, then what no method passes.

@@ -39,6 +39,10 @@ std::string SettingOf(const LoadedRun& run, const std::string& name,
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
+bool IsAdvisedByModel(const LoadedRun& run) {
+  return run.description.asks_model && run.description.method == "advisor";
+}
+
 bool HasAllSwitchesOn(const LoadedRun& run) {
   return SettingOf(run, "overlay", "true") == "true" &&
          SettingOf(run, "route_text", "true") == "true" &&
@@ -84,10 +88,6 @@ std::vector<std::string> GroupsOfAll(const std::vector<LoadedRun>& runs) {
     }
   }
   return groups;
-}
-
-Metrics MetricsOf(const LoadedRun& run, const std::string& group) {
-  return ComputeMetrics(ScoresOfGroup(run, group), run.description.rule);
 }
 
 }  // namespace terra::benchmark

@@ -20,6 +20,9 @@ std::string SettingOf(const LoadedRun& run, const std::string& name,
 bool IsGenerated(const LoadedRun& run);
 bool IsRugd(const LoadedRun& run);
 
+/// Is it `advisor` with a model's answers?
+bool IsAdvisedByModel(const LoadedRun& run);
+
 /// Is the model shown all it can be: overlay, route text and reference pair?
 bool HasAllSwitchesOn(const LoadedRun& run);
 
@@ -35,12 +38,9 @@ std::string DatasetTitle(const RunDescription& description);
 /// The groups of all runs, in order of appearance.
 std::vector<std::string> GroupsOfAll(const std::vector<LoadedRun>& runs);
 
-/// The metrics of one group of a run.
-Metrics MetricsOf(const LoadedRun& run, const std::string& group);
-
 /// What the small figures are.
 inline constexpr const char* kIntervalNote =
     "Small figures: 95 % intervals; rates Wilson, means bootstrap over cases "
-    "(10,000 resamples, fixed seed).";
+    "(10,000 resamples, of more than 100,000 cases 1,000; fixed seed).";
 
 }  // namespace terra::benchmark

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "benchmark/integer_random.h"
+#include "benchmark/parallel.h"
 #include "terrain/require.h"
 
 namespace terra::benchmark {
@@ -23,6 +25,23 @@ std::pair<double, double> CentralInterval(std::vector<double> values) {
     return values[below] + part * (values[above] - values[below]);
   };
   return {at(0.025), at(0.975)};
+}
+
+// The mean of the i-th resample; not a number where it has no term. Resamples
+// follow each other in one series of random numbers.
+double ResampledMean(std::span<const Cluster> clusters, std::int64_t i) {
+  IntegerRandom random(kBootstrapSeed);
+  random.Skip(static_cast<std::uint64_t>(i) * clusters.size());
+  const auto last = static_cast<int>(clusters.size()) - 1;
+  double sum = 0;
+  std::int64_t count = 0;
+  for (int k = 0; k <= last; ++k) {
+    const Cluster& c = clusters[static_cast<std::size_t>(random.In(0, last))];
+    sum += c.sum;
+    count += c.count;
+  }
+  if (count == 0) return std::numeric_limits<double>::quiet_NaN();
+  return sum / static_cast<double>(count);
 }
 
 }  // namespace
@@ -48,22 +67,17 @@ Estimate BootstrapMean(std::span<const Cluster> clusters) {
     count += c.count;
   }
   TERRA_REQUIRE(count > 0);
-  IntegerRandom random(kBootstrapSeed);
-  const auto last = static_cast<int>(clusters.size()) - 1;
-  std::vector<double> means;
-  means.reserve(kBootstrapResamples);
-  for (int i = 0; i < kBootstrapResamples; ++i) {
-    double drawn_sum = 0;
-    std::int64_t drawn_count = 0;
-    for (int k = 0; k <= last; ++k) {
-      const Cluster& c = clusters[static_cast<std::size_t>(random.In(0, last))];
-      drawn_sum += c.sum;
-      drawn_count += c.count;
-    }
-    if (drawn_count > 0) {
-      means.push_back(drawn_sum / static_cast<double>(drawn_count));
-    }
-  }
+  // Small samples are not worth a thread.
+  constexpr std::size_t kManyClusters = 1000;
+  const int resamples = NumResamples(clusters.size());
+  std::vector<double> means(static_cast<std::size_t>(resamples));
+  ParallelFor(resamples, clusters.size() < kManyClusters ? 1 : 0,
+              [&](std::int64_t i) {
+                means[static_cast<std::size_t>(i)] = ResampledMean(clusters, i);
+              });
+  std::erase_if(means, [](double mean) {
+    return std::isnan(mean);
+  });
   const double mean = sum / static_cast<double>(count);
   const auto [low, high] = CentralInterval(std::move(means));
   return {mean, low, high};

@@ -11,6 +11,7 @@
 
 #include "benchmark/detail_tables.h"
 #include "benchmark/paper_tables.h"
+#include "benchmark/switch_tables.h"
 #include "cli/bench_commands.h"
 #include "cli/output.h"
 #include "terrain/files/whole_file.h"
@@ -34,7 +35,7 @@ struct TableArguments {
 // A table that can be asked for; `varies`: its runs may differ in stride,
 // joints or case list, because it compares just these.
 struct NamedTable {
-  std::function<Table(const Runs&)> make;
+  std::function<Result<Table>(const Runs&)> make;
   bool varies = false;
 };
 
@@ -107,17 +108,19 @@ int RunTable(const TableArguments& arguments) {
     const Status fit = CheckComparable(*runs, arguments.intersect);
     if (!fit.ok()) return Fail(fit.error());
   }
-  Table table;
-  if (arguments.intersect && !runs->empty()) {
-    benchmark::KeepCommonCases(*runs);
-    table = named.make(*runs);
-    table.notes.push_back("Only the " +
-                          std::to_string(runs->front().scores.size()) +
-                          " cases that all runs have.");
-  } else {
-    table = named.make(*runs);
+  const bool intersect = arguments.intersect && !runs->empty();
+  if (intersect) {
+    const Status kept = benchmark::KeepCommonCases(*runs);
+    if (!kept.ok()) return Fail(kept.error());
   }
-  const std::string text = Format(table, arguments.format);
+  Result<Table> table = named.make(*runs);
+  if (!table.ok()) return Fail(table.error());
+  if (intersect) {
+    table->notes.push_back("Only the " +
+                           std::to_string(runs->front().num_rows) +
+                           " cases that all runs have.");
+  }
+  const std::string text = Format(*table, arguments.format);
   if (arguments.out.empty()) {
     std::cout << text;
     return kDone;

@@ -1,5 +1,6 @@
 #include "cli/case_selection.h"
 
+#include <optional>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -27,6 +28,10 @@ Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
                                              const std::string& text) {
   if (text.empty()) return std::vector<std::string>{};
   const Result<int> number = ParseInteger(text);
+  if (number.ok() && *number < 1) {
+    return Error{ErrorCode::kInvalid,
+                 "--cases " + text + ": at least one case of each group"};
+  }
   if (number.ok()) return benchmark::FirstOfEachGroup(dataset, *number);
   const Result<std::string> file = ReadWholeFile(text, kMaxCaseListBytes);
   if (!file.ok()) return file.error();
@@ -42,6 +47,11 @@ Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
   }
   if (ids.empty()) {
     return Error{ErrorCode::kInvalid, text + ": names no case"};
+  }
+  const std::optional<std::size_t> twice = IndexOf(ids).FirstDouble();
+  if (twice) {
+    return Error{ErrorCode::kInvalid,
+                 text + ": names '" + ids[*twice] + "' twice"};
   }
   return ids;
 }

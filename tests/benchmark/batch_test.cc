@@ -11,6 +11,7 @@
 #include "benchmark/llm_method.h"
 #include "benchmark/loaded_run.h"
 #include "benchmark/metrics.h"
+#include "tests/benchmark/metrics_of_all.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
 
@@ -194,7 +195,7 @@ TEST_P(Batch, ReplaysAsIfEachQuestionHadBeenAskedByItself) {
 
   const LoadedRun run = ReplayRun();
   EXPECT_TRUE(run.complete());
-  const Metrics m = ComputeMetrics(run.scores, run.description.rule);
+  const Metrics m = MetricsOfAll(run);
   EXPECT_EQ(m.lower, 27);
   EXPECT_NEAR(100 * m.mogr->value, 83.74, 0.005);
   EXPECT_EQ(m.tokens_in, 64'000);
@@ -226,7 +227,7 @@ TEST_P(Batch, WhatFailedExpiredOrIsMissingHasNoAnswerAndIsAskedAgain) {
 
   const LoadedRun run = ReplayRun(cases);
   EXPECT_FALSE(run.complete());
-  EXPECT_EQ(ComputeMetrics(run.scores, run.description.rule).no_answer, 3);
+  EXPECT_EQ(MetricsOfAll(run).no_answer, 3);
 
   auto again = Export(GetParam(), "again", cases, folder_.Path("calls.jsonl"));
   EXPECT_THAT(again, ElementsAre(ids[1], ids[2], ids[3]));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -81,6 +82,23 @@ TEST_F(BenchCommand, KilledAgainAndAgainARunLosesAndRepeatsNoCase) {
   const RunResult last = RunToEnd(RunArguments("killed"));
   ASSERT_EQ(last.exit_code, 0) << last.output;
   EXPECT_EQ(Results("killed"), Results("whole"));
+}
+
+TEST_F(BenchCommand, AListOfNoCasesOrOfOneTwiceIsRefused) {
+  const std::string twice = folder_.Write("twice", "hard_0001\nhard_0001\n");
+  for (const auto& [cases, why] :
+       {std::pair<std::string, std::string>{"0", "at least one case"},
+        {"-1", "at least one case"},
+        {twice, "names 'hard_0001' twice"},
+        {folder_.Write("none", "\n"), "names no case"},
+        {folder_.Write("unknown", "hard_0001\nx\n"), "has no case 'x'"}}) {
+    std::vector<std::string> arguments = RunArguments("out");
+    arguments.push_back("--cases=" + cases);
+    const RunResult run = RunToEnd(arguments);
+    EXPECT_EQ(run.exit_code, 1) << cases;
+    EXPECT_THAT(run.output, HasSubstr(why));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("out")));
 }
 
 TEST_F(BenchCommand, TheTasksOfASlurmArrayMakeTheRunInOnePiece) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "benchmark/comparison.h"
+
 namespace terra::benchmark {
 namespace {
 
@@ -175,7 +177,9 @@ TEST(Metrics, OtherRepeatsAreShownApart) {
                                Case("b", AttemptKind::kPropose, 85)};
   scores[1].repeat = scores[3].repeat = 1;
   EXPECT_EQ(ComputeMetrics(scores, kRefiner).paths, 2);
-  const RepeatFigures figures = ComputeRepeats(scores, kRefiner);
+  RepeatsBuilder repeats(kRefiner);
+  for (const Score& score : scores) repeats.Add(score);
+  const RepeatFigures figures = repeats.Figures();
   EXPECT_EQ(figures.repeats, 2);
   EXPECT_DOUBLE_EQ(figures.mean_lower, 0.75);
   EXPECT_DOUBLE_EQ(figures.unstable, 0.5);
@@ -280,6 +284,13 @@ TEST(Metrics, TheSameCaseCountsInEveryStageOfTheTimes) {
   EXPECT_DOUBLE_EQ(*m.fps, 21 / (21 * 33.0));
 }
 
+Comparison Paired(const std::vector<Score>& first, const CountingRule& rule,
+                  const std::vector<Score>& second,
+                  const CountingRule& second_rule) {
+  return ComparePaired(ReaderOf(first), rule, ReaderOf(second), second_rule)
+      .value();
+}
+
 TEST(ComparePaired, ResamplesTheDifferencesBySequence) {
   // Differences of recovery: 0.5 in the first of five sequences, else 0.
   std::vector<Score> first = FivePairs();
@@ -288,11 +299,11 @@ TEST(ComparePaired, ResamplesTheDifferencesBySequence) {
     first[i].oracle_cost = second[i].oracle_cost = 80;
     second[i].final_cost = 90;
   }
-  const Comparison by_case = ComparePaired(first, kRefiner, second, kRefiner);
+  const Comparison by_case = Paired(first, kRefiner, second, kRefiner);
   EXPECT_DOUBLE_EQ(by_case.mogr_difference->value, 0.1);
   EXPECT_NEAR(by_case.mogr_difference->high, 5 * 0.5 / 10, 1e-12);
   const Comparison by_sequence =
-      ComparePaired(BySequence(first), kRefiner, BySequence(second), kRefiner);
+      Paired(BySequence(first), kRefiner, BySequence(second), kRefiner);
   EXPECT_DOUBLE_EQ(by_sequence.mogr_difference->value, 0.1);
   EXPECT_NEAR(by_sequence.mogr_difference->low, 0, 1e-12);
   EXPECT_NEAR(by_sequence.mogr_difference->high, 3 * 0.5 / 5, 1e-12);
@@ -300,8 +311,8 @@ TEST(ComparePaired, ResamplesTheDifferencesBySequence) {
 
 TEST(ComparePaired, GivesNoRecoveryToMethodsWithoutFallback) {
   const std::vector<Score> scores = FivePairs();
-  EXPECT_FALSE(ComparePaired(scores, kRefiner, scores, kDirect)
-                   .mogr_difference.has_value());
+  EXPECT_FALSE(
+      Paired(scores, kRefiner, scores, kDirect).mogr_difference.has_value());
 }
 
 TEST(ComparePaired, CountsTheCasesInWhichOnlyOneIsLower) {
@@ -315,7 +326,7 @@ TEST(ComparePaired, CountsTheCasesInWhichOnlyOneIsLower) {
                                      Case("b", AttemptKind::kRetain, 100),
                                      Case("a", AttemptKind::kRetain, 100),
                                      Case("e", AttemptKind::kPropose, 90)};
-  const Comparison result = ComparePaired(first, kRefiner, second, kAdvisor);
+  const Comparison result = Paired(first, kRefiner, second, kAdvisor);
   EXPECT_EQ(result.cases, 4);
   EXPECT_EQ(result.only_first_lower, 2);
   EXPECT_EQ(result.only_second_lower, 1);

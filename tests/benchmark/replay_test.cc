@@ -9,6 +9,7 @@
 #include "benchmark/paper_tables.h"
 #include "benchmark/run.h"
 #include "benchmark/run_labels.h"
+#include "tests/benchmark/metrics_of_all.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
 
@@ -52,7 +53,7 @@ class Replay : public ::testing::Test {
 TEST_F(Replay, RawAnswersScoreAsTheIndependentImplementationSays) {
   const LoadedRun run = Run("raw", false);
   EXPECT_TRUE(run.complete());  // Else the prompt changed: make.sh there.
-  const Metrics m = ComputeMetrics(run.scores, run.description.rule);
+  const Metrics m = MetricsOfAll(run);
   EXPECT_EQ(m.paths, 32);
   EXPECT_EQ(m.suggested, 28);
   EXPECT_EQ(m.lower, 27);
@@ -67,7 +68,7 @@ TEST_F(Replay, RawAnswersScoreAsTheIndependentImplementationSays) {
 
 TEST_F(Replay, PolishedAnswersScoreAsTheIndependentImplementationSays) {
   const LoadedRun run = Run("polished", true);
-  const Metrics m = ComputeMetrics(run.scores, run.description.rule);
+  const Metrics m = MetricsOfAll(run);
   EXPECT_NEAR(100 * m.fir->value, 87.50, 0.005);
   EXPECT_NEAR(100 * m.asr->value, 100, 0.005);
   EXPECT_NEAR(100 * m.acr->value, 13.06, 0.005);
@@ -109,8 +110,7 @@ TEST_F(Replay, QuestionsThatWereNotRecordedHaveNoAnswer) {
   const LoadedRun loaded = LoadRuns({folder_.Path("x")}).value().front();
   EXPECT_FALSE(loaded.complete());
   EXPECT_THAT(RowTitle(loaded), HasSubstr("[incomplete]"));
-  EXPECT_EQ(ComputeMetrics(loaded.scores, loaded.description.rule).no_answer,
-            1);
+  EXPECT_EQ(MetricsOfAll(loaded).no_answer, 1);
 }
 
 }  // namespace

@@ -15,6 +15,11 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
+void SetScores(LoadedRun& run, std::vector<Score> scores) {
+  run.read = ReaderOf(std::move(scores));
+  EXPECT_TRUE(SumUp(run).ok());
+}
+
 // A refiner's run on the first n cases of both subsets.
 LoadedRun Refiner(const std::string& folder, const std::string& backend, int n,
                   int jobs = 2) {
@@ -30,6 +35,7 @@ LoadedRun Refiner(const std::string& folder, const std::string& backend, int n,
   d.joints = "2r";
   d.settings_json = "{}";
   d.jobs = jobs;
+  std::vector<Score> scores;
   for (const std::string group : {"easy", "hard"}) {
     for (int i = 0; i < n; ++i) {
       Score score;
@@ -38,10 +44,20 @@ LoadedRun Refiner(const std::string& folder, const std::string& backend, int n,
       score.kind = AttemptKind::kPropose;
       score.baseline_cost = 100;
       score.oracle_cost = score.final_cost = 90;
-      run.scores.push_back(score);
+      scores.push_back(score);
     }
   }
+  SetScores(run, std::move(scores));
   return run;
+}
+
+std::vector<Score> ScoresOf(const LoadedRun& run) {
+  std::vector<Score> scores;
+  EXPECT_TRUE(run.read([&](const Score& score) {
+                   scores.push_back(score);
+                 })
+                  .ok());
+  return scores;
 }
 
 LoadedRun Model(const std::string& folder, int n, const std::string& settings) {
@@ -58,9 +74,11 @@ std::vector<std::string> Folders(const std::vector<LoadedRun>& runs) {
 }
 
 TEST(SelectRuns, ARunMadeTwiceStandsOnceWithTheTimesOfOneCaseAtATime) {
-  const Selection s = SelectRuns(
-      {Refiner("a", "shortcut", 5, 2), Refiner("b", "band", 5, 2),
-       Refiner("c", "shortcut", 5, 1), Refiner("d", "shortcut", 5, 1)});
+  const Selection s =
+      SelectRuns({Refiner("a", "shortcut", 5, 2), Refiner("b", "band", 5, 2),
+                  Refiner("c", "shortcut", 5, 1),
+                  Refiner("d", "shortcut", 5, 1)})
+          .value();
   EXPECT_THAT(Folders(s.comparison), ElementsAre("c", "b"));
   EXPECT_THAT(Folders(s.gap), ElementsAre("c", "b"));
   EXPECT_THAT(Folders(s.latency), ElementsAre("c"));
@@ -74,11 +92,12 @@ TEST(SelectRuns, LatencyRowsTookOneCaseAtATimeOnTheSameCases) {
   coarser.description.stride = 100;
   const Selection s = SelectRuns({Refiner("many jobs", "search", 9, 2),
                                   Refiner("few", "search", 4, 1),
-                                  Model("model", 9, "{}"), elsewhere, coarser});
+                                  Model("model", 9, "{}"), elsewhere, coarser})
+                          .value();
   EXPECT_THAT(Folders(s.latency), UnorderedElementsAre("few", "model"));
-  for (const LoadedRun& run : s.latency) EXPECT_EQ(run.scores.size(), 8U);
+  for (const LoadedRun& run : s.latency) EXPECT_EQ(run.num_rows, 8);
   EXPECT_THAT(Folders(s.comparison), ElementsAre("many jobs", "model"));
-  EXPECT_EQ(s.comparison.front().scores.size(), 18U);
+  EXPECT_EQ(s.comparison.front().num_rows, 18);
   ASSERT_EQ(s.others.size(), 2U);
   EXPECT_THAT(Folders(s.others[0]), ElementsAre("elsewhere"));
   EXPECT_THAT(Folders(s.others[1]), ElementsAre("coarser"));
@@ -89,10 +108,11 @@ TEST(SelectRuns, AblationAndNoiseDoNotMixDatasets) {
   elsewhere.description.dataset_digest = "other maps";
   const Selection s = SelectRuns({elsewhere, Model("full", 9, "{}"),
                                   Model("bare", 9, R"({"rea":false})"),
-                                  Model("noisy", 4, R"({"noise":5})")});
+                                  Model("noisy", 4, R"({"noise":5})")})
+                          .value();
   EXPECT_THAT(Folders(s.ablation), UnorderedElementsAre("full", "bare"));
   EXPECT_THAT(Folders(s.noise), UnorderedElementsAre("full", "noisy"));
-  for (const LoadedRun& run : s.noise) EXPECT_EQ(run.scores.size(), 8U);
+  for (const LoadedRun& run : s.noise) EXPECT_EQ(run.num_rows, 8);
   EXPECT_THAT(Folders(s.comparison), ElementsAre("full"));
   ASSERT_EQ(s.others.size(), 1U);
   EXPECT_THAT(Folders(s.others[0]), ElementsAre("elsewhere"));
@@ -102,16 +122,39 @@ TEST(SelectRuns, RunsOfAnotherCostModelStandApart) {
   LoadedRun tight = Refiner("tight", "shortcut", 5);
   tight.description.corner_cutting = false;
   tight.description.stride = 10;
-  const Selection s = SelectRuns({Refiner("main", "shortcut", 5), tight});
+  const Selection s =
+      SelectRuns({Refiner("main", "shortcut", 5), tight}).value();
   EXPECT_THAT(Folders(s.gap), ElementsAre("main"));
   EXPECT_THAT(Folders(s.others.at(0)), ElementsAre("tight"));
 }
 
 TEST(SelectRuns, OfNothingIsNothing) {
-  const Selection s = SelectRuns({});
+  const Selection s = SelectRuns({}).value();
   EXPECT_THAT(s.comparison, IsEmpty());
   EXPECT_THAT(s.latency, IsEmpty());
   EXPECT_THAT(s.others, IsEmpty());
+}
+
+TEST(WhyNotComparable, NamesTheCaseWithAnotherBaseline) {
+  const LoadedRun a = Refiner("a", "search", 3);
+  LoadedRun b = Refiner("b", "shortcut", 3);
+  EXPECT_EQ(WhyNotComparable(a, b), "");
+  std::vector<Score> scores = ScoresOf(b);
+  // Other order, a row less: still the same cases where both have them.
+  std::swap(scores[0], scores[4]);
+  scores.pop_back();
+  SetScores(b, scores);
+  EXPECT_FALSE(b.complete());
+  EXPECT_EQ(WhyNotComparable(a, b), "");
+  scores[2].baseline_cost = 101;
+  SetScores(b, scores);
+  EXPECT_EQ(WhyNotComparable(a, b),
+            "a and b differ in their map or baseline of case easy2");
+  scores[2].baseline_cost = 100;
+  scores[3].map_id = 7;
+  SetScores(b, scores);
+  EXPECT_EQ(WhyNotComparable(a, b),
+            "a and b differ in their map or baseline of case hard0");
 }
 
 TEST(SortRows, PutsTheBoundsLast) {
@@ -138,8 +181,10 @@ TEST(LatencyTable, SaysHowManyCallsOfAModelACaseTakes) {
 
 TEST(ProposalTable, HasColumnsForCandidatesWhereAnAnswerMayHaveSeveral) {
   LoadedRun several = Model("several", 1, R"({"candidates":4})");
-  several.scores[0].candidates = 4;
-  several.scores[0].candidates_lower = 1;
+  std::vector<Score> scores = ScoresOf(several);
+  scores[0].candidates = 4;
+  scores[0].candidates_lower = 1;
+  SetScores(several, std::move(scores));
   const LoadedRun one = Model("one", 1, "{}");
   const std::string both = ToCsv(ProposalTable({one, several}, "easy"));
   EXPECT_THAT(both, HasSubstr(",Candidates,ASR per candidate %,"));
@@ -147,6 +192,27 @@ TEST(ProposalTable, HasColumnsForCandidatesWhereAnAnswerMayHaveSeveral) {
   EXPECT_THAT(both, HasSubstr(",4,25.00,4.56,69.94,0.00,0.00,48.99\n"));
   EXPECT_THAT(ToCsv(ProposalTable({one}, "easy")),
               ::testing::Not(HasSubstr("andidate")));
+}
+
+TEST(ProposalTable, ShowsHowAnswersVaryOverRepeats) {
+  // One case of each group, asked twice: lower, then not.
+  LoadedRun repeated = Model("repeated", 1, "{}");
+  repeated.description.repeats = 2;
+  std::vector<Score> scores = ScoresOf(repeated);
+  for (const Score& first : ScoresOf(repeated)) {
+    scores.push_back(first);
+    scores.back().repeat = 1;
+    scores.back().final_cost = 100;
+  }
+  SetScores(repeated, std::move(scores));
+  const LoadedRun once = Model("once", 1, "{}");
+  const std::string text = ToCsv(ProposalTable({once, repeated}, "easy"));
+  EXPECT_THAT(text,
+              HasSubstr(",Repeats,FIR over repeats %,Cases that vary %\n"));
+  EXPECT_THAT(text, HasSubstr(",1,-,-\n"));
+  EXPECT_THAT(text, HasSubstr(",2,50.00,100.00\n"));
+  EXPECT_THAT(ToCsv(ProposalTable({once}, "easy")),
+              ::testing::Not(HasSubstr("Repeats")));
 }
 
 TEST(RowTitle, OfARecordingSaysWhenItWasMade) {

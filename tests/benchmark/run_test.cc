@@ -254,6 +254,10 @@ TEST_F(RunTest, UnknownMethodsAndBackendsAreNamedWithThoseThereAre) {
               HasSubstr("there are advisor, coarse"));
   EXPECT_THAT(ErrorMessage(FindDeterministicMethod("advisor", "x", false)),
               HasSubstr("search"));
+  EXPECT_THAT(ErrorMessage(FindDeterministicMethod("direct", "search", false)),
+              HasSubstr("direct asks a model"));
+  EXPECT_THAT(ErrorMessage(FindDeterministicMethod("coarse", "search", false)),
+              HasSubstr("coarse takes no backend 'search'"));
 }
 
 TEST_F(RunTest, AMissingMapEndsTheRunWithItsName) {

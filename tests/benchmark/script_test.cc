@@ -1,4 +1,5 @@
 // scripts/bench from nothing to the report, on a few maps.
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -18,9 +19,9 @@ namespace terra::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
+using terra::testing::ChildProcess;
 using terra::testing::ProgramPath;
 using terra::testing::RunResult;
-using terra::testing::RunToEnd;
 using terra::testing::TempFolder;
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -46,7 +47,11 @@ class BenchScript : public ::testing::Test {
                                         "--out",
                                         folder_.Path("out")};
     command.insert(command.end(), options.begin(), options.end());
-    return RunToEnd(command);
+    // Some thirty programs one after the other: a minute is too little where
+    // all cores are taken.
+    ChildProcess script(command);
+    const auto code = script.WaitForExit(std::chrono::minutes(4));
+    return {code.value_or(-1), script.output()};
   }
 
   std::map<std::string, RunDescription> Runs() const {

@@ -1,10 +1,13 @@
 #include "benchmark/statistics.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "benchmark/integer_random.h"
 
 namespace terra::benchmark {
 namespace {
@@ -58,6 +61,40 @@ TEST(Bootstrap, OfTwoValuesSpansThemBoth) {
   EXPECT_DOUBLE_EQ(mean.value, 0.5);
   EXPECT_DOUBLE_EQ(mean.low, 0);
   EXPECT_DOUBLE_EQ(mean.high, 1);
+}
+
+TEST(Bootstrap, OnSeveralCoresDrawsTheSameSeriesAsOnOne) {
+  std::vector<Cluster> clusters;
+  for (int i = 0; i < 1001; ++i) clusters.push_back({0.1 * i * i, 1});
+  IntegerRandom random(kBootstrapSeed);
+  std::vector<double> means;
+  for (int i = 0; i < NumResamples(1001); ++i) {
+    double sum = 0;
+    for (int k = 0; k < 1001; ++k) {
+      sum += clusters[static_cast<std::size_t>(random.In(0, 1000))].sum;
+    }
+    means.push_back(sum / 1001);
+  }
+  std::sort(means.begin(), means.end());
+  const Estimate mean = BootstrapMean(clusters);
+  // The quantiles lie between the 249th and 250th of 9,999 steps.
+  EXPECT_DOUBLE_EQ(mean.low, means[249] + 0.975 * (means[250] - means[249]));
+  EXPECT_DOUBLE_EQ(mean.high,
+                   means[9749] + 0.025 * (means[9750] - means[9749]));
+}
+
+TEST(Bootstrap, OfVeryManyClustersDrawsFewerResamples) {
+  EXPECT_EQ(NumResamples(1), 10'000);
+  EXPECT_EQ(NumResamples(100'000), 10'000);
+  EXPECT_EQ(NumResamples(100'001), 1'000);
+  // Half of the cases 1: the mean of n has a standard error of 0.5 / sqrt(n).
+  std::vector<Cluster> clusters(200'000, Cluster{0, 1});
+  for (std::size_t i = 0; i < clusters.size(); i += 2) clusters[i].sum = 1;
+  const double half = 1.96 * 0.5 / std::sqrt(200'000.0);
+  const Estimate mean = BootstrapMean(clusters);
+  EXPECT_DOUBLE_EQ(mean.value, 0.5);
+  EXPECT_NEAR(mean.low, 0.5 - half, 0.2 * half);
+  EXPECT_NEAR(mean.high, 0.5 + half, 0.2 * half);
 }
 
 // Of five clusters one stands out, so the number of times it is drawn is

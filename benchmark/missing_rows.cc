@@ -1,0 +1,64 @@
+#include "benchmark/missing_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "benchmark/run_labels.h"
+
+namespace terra::benchmark {
+namespace {
+
+// A row of the paper that a run here may stand for.
+struct PaperRow {
+  const char* method;
+  const char* backend;
+  const char* title;
+};
+
+constexpr PaperRow kPaperMethods[] = {
+    {"direct", "openai", "Direct LLM (gpt-5.5)"},
+    {"direct", "gemini", "Direct LLM (gemini-3.1-pro-preview)"},
+    {"direct", "anthropic", "Direct LLM (claude-opus-4-8)"},
+    {"llm-astar", "openai", "LLM-A* (gpt-5.5)"},
+    {"advisor", "openai", "LLM-Advisor (gpt-5.5)"},
+    {"advisor", "gemini", "LLM-Advisor (gemini-3.1-pro-preview)"},
+    {"advisor", "anthropic", "LLM-Advisor (claude-opus-4-8)"},
+};
+
+std::string KeyVariable(const std::string& backend) {
+  if (backend == "openai") return "OPENAI_API_KEY";
+  if (backend == "gemini") return "GEMINI_API_KEY";
+  return "ANTHROPIC_API_KEY";
+}
+
+bool Measured(const std::vector<LoadedRun>& runs, const std::string& method,
+              const std::string& backend) {
+  return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& run) {
+    return run.description.method == method && ProviderOf(run) == backend &&
+           !run.description.simulated;
+  });
+}
+
+}  // namespace
+
+std::string HowToMeasure(const std::string& method, const std::string& backend,
+                         const std::string& more, const std::string& suffix) {
+  return "not measured; " + KeyVariable(backend) +
+         "=... terra bench run --dataset DIR --method " + method +
+         " --backend " + backend + more + " --out runs/" + method + "-" +
+         backend + suffix;
+}
+
+void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
+                const std::string& more, const std::string& suffix) {
+  TableBlock missing;
+  missing.heading = "Not measured here";
+  for (const PaperRow& row : kPaperMethods) {
+    if (Measured(runs, row.method, row.backend)) continue;
+    missing.rows.push_back(
+        {row.title, HowToMeasure(row.method, row.backend, more, suffix)});
+  }
+  if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+}
+
+}  // namespace terra::benchmark

@@ -63,7 +63,12 @@ Status Listen(int fd, const UdpmUrl& to, const std::string& url) {
   address.sin_port = htons(to.port);
   if (bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) !=
       0) {
-    return SystemError("cannot listen", url);
+    const std::string port = std::to_string(to.port);
+    return SystemError(errno == EADDRINUSE
+                           ? "UDP port " + port +
+                                 " is taken by another program; choose another"
+                           : "cannot listen",
+                       url);
   }
   ip_mreq membership{};
   membership.imr_multiaddr.s_addr = htonl(to.group);

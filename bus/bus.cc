@@ -31,7 +31,26 @@ sockaddr_in GroupAddress(const LcmUrl& url) {
   return address;
 }
 
-// liblcm does not say why it failed, so the two usual reasons are tried out.
+// liblcm 1.3.1 waits with select(), which ends the process when a descriptor
+// is FD_SETSIZE or more: refused here, with a word.
+Status RoomForLcm() {
+  constexpr int kDescriptorsOfLcm = 24;
+  const int next = eventfd(0, EFD_CLOEXEC);
+  if (next >= 0) close(next);
+  if (next >= 0 && next + kDescriptorsOfLcm < FD_SETSIZE) return Done{};
+  return Error{
+      ErrorCode::kUnavailable,
+      next < 0
+          ? std::string("no file descriptor left: ") + std::strerror(errno)
+          : "about " + std::to_string(next) +
+                " file descriptors are open already and LCM cannot use those "
+                "from " +
+                std::to_string(FD_SETSIZE) +
+                " on: close what the parent process leaves open"};
+}
+
+}  // namespace
+
 Error WhyUnusable(const std::string& text, const std::string& what) {
   const Result<LcmUrl> url = ParseLcmUrl(text);
   if (!url) return url.error();
@@ -53,7 +72,7 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
       if (bind(other, generic, sizeof address) != 0) {
         why = "UDP port " + std::to_string(url->port) +
               " is taken by another program (" + std::strerror(errno) +
-              "); choose another port in --lcm-url";
+              "); choose another port";
       }
       close(other);
       return Error{ErrorCode::kUnavailable,
@@ -64,26 +83,6 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
   return Error{ErrorCode::kUnavailable,
                "cannot use the bus " + text + ": " + why};
 }
-
-// liblcm 1.3.1 waits with select(), which ends the process when a descriptor
-// is FD_SETSIZE or more: refused here, with a word.
-Status RoomForLcm() {
-  constexpr int kDescriptorsOfLcm = 24;
-  const int next = eventfd(0, EFD_CLOEXEC);
-  if (next >= 0) close(next);
-  if (next >= 0 && next + kDescriptorsOfLcm < FD_SETSIZE) return Done{};
-  return Error{
-      ErrorCode::kUnavailable,
-      next < 0
-          ? std::string("no file descriptor left: ") + std::strerror(errno)
-          : "about " + std::to_string(next) +
-                " file descriptors are open already and LCM cannot use those "
-                "from " +
-                std::to_string(FD_SETSIZE) +
-                " on: close what the parent process leaves open"};
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Bus>> Bus::Open(const std::string& url,
                                        ChannelNames names) {

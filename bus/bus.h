@@ -18,6 +18,11 @@ struct _lcm_recv_buf_t;
 
 namespace terra::bus {
 
+/// What to say of a bus that cannot be used. liblcm does not say why it failed,
+/// so the two usual reasons (no multicast route, a busy port) are tried out;
+/// `otherwise` stands where it is neither.
+Error WhyUnusable(const std::string& url, const std::string& otherwise);
+
 /// One LCM bus: opens it with checks, publishes, and receives in a thread that
 /// does nothing but fill inboxes.
 ///

@@ -53,12 +53,16 @@ void AddJointsOption(CLI::App& command, planner::JointRule& joints) {
       {"cell", planner::JointRule::kCell},
       {"2r", planner::JointRule::kTwoStrides},
       {"visible", planner::JointRule::kVisible}};
+  const auto read = [&joints](const std::string& name) {
+    joints = kRules.at(name);
+  };
   command
-      .add_option("--joints", joints,
-                  "How start and goal join the lattice: to the corners of "
-                  "their cell, to nodes within two strides (default), or to "
-                  "all nodes that a feasible segment reaches")
-      ->transform(CLI::CheckedTransformer(kRules))
+      .add_option_function<std::string>(
+          "--joints", read,
+          "How start and goal join the lattice: to the corners of their cell, "
+          "to nodes within two strides (default), or to all nodes that a "
+          "feasible segment reaches")
+      ->check(CLI::IsMember(&kRules).description(""))
       ->type_name("cell|2r|visible");
 }
 

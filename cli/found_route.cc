@@ -11,14 +11,14 @@
 namespace terra::cli {
 namespace {
 
-Error WhyNoRoute(SearchStatus status, const ProblemArguments& problem,
+Error WhyNoRoute(const FoundRoute& found, const ProblemArguments& problem,
                  const TerrainMap& map) {
   const Status ends = CheckEnds(map, problem);
   if (!ends.ok()) return ends.error();
-  TERRA_REQUIRE(status == SearchStatus::kNoRoute);
+  TERRA_REQUIRE(found.status == SearchStatus::kNoRoute);
   return Error{ErrorCode::kNotFound, "there is no route from " +
                                          ToString(problem.start) + " to " +
-                                         ToString(problem.goal)};
+                                         ToString(problem.goal) + found.where};
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ int PrintFoundRoute(const FoundRoute& found, const ProblemArguments& problem,
     std::cout << text.dump() << "\n";
   }
   if (found.status != SearchStatus::kFound) {
-    return Fail(WhyNoRoute(found.status, problem, map));
+    return Fail(WhyNoRoute(found, problem, map));
   }
   if (!json) {
     std::cout << "cost      " << FormatNumber(found.cost) << "\n"

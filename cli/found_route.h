@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "cli/map_arguments.h"
 #include "terrain/search_result.h"
@@ -14,6 +15,7 @@ struct FoundRoute {
   double cost = kImpassable;
   std::int64_t expanded = 0;
   double seconds = 0;  ///< Of the search alone.
+  std::string where;   ///< "there is no route from A to B" goes on with it.
 };
 
 /// Prints it as JSON or for people; where there is no route, JSON has nulls and

@@ -17,6 +17,17 @@
 namespace terra::cli {
 namespace {
 
+// Opens a log in which there is something. Errors: also that there is not.
+Result<logger::LogReader> OpenWithEvents(const std::string& path) {
+  Result<logger::LogReader> probe = logger::LogReader::Open(path);
+  if (!probe) return probe.error();
+  if (!probe->Next()) {
+    return Error{ErrorCode::kInvalid,
+                 path + " holds no events; is it an LCM event log?"};
+  }
+  return logger::LogReader::Open(path);
+}
+
 struct InfoArguments {
   std::string file;
   bool json = false;
@@ -100,7 +111,7 @@ void PrintAuditJson(const logger::Audit& audit) {
 }
 
 int RunAudit(const AuditArguments& arguments) {
-  Result<logger::LogReader> reader = logger::LogReader::Open(arguments.file);
+  Result<logger::LogReader> reader = OpenWithEvents(arguments.file);
   if (!reader) return Fail(reader.error());
   const logger::Audit audit = logger::AuditLog(*reader);
   if (arguments.json) {
@@ -133,7 +144,7 @@ struct ReportArguments {
 };
 
 int RunReport(const ReportArguments& arguments) {
-  Result<logger::LogReader> reader = logger::LogReader::Open(arguments.file);
+  Result<logger::LogReader> reader = OpenWithEvents(arguments.file);
   if (!reader) return Fail(reader.error());
   const std::string page = logger::MakeReport(arguments.file, *reader);
   std::ofstream file(arguments.out, std::ios::binary);

@@ -6,11 +6,12 @@
 
 #include "bus/usage_message.h"
 #include "cli/commands.h"
+#include "cli/output.h"
 
 namespace {
 
-constexpr int kCouldNot = 1;
-constexpr int kWrongUsage = 2;
+using terra::cli::kCouldNot;
+using terra::cli::kWrongUsage;
 
 void AddCommands(CLI::App& app, int& exit_code) {
   using namespace terra::cli;  // NOLINT(google-build-using-namespace)

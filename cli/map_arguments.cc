@@ -36,12 +36,15 @@ Status CheckEnd(const TerrainMap& map, const std::string& name, Cell cell) {
 }  // namespace
 
 void AddCostModelOptions(CLI::App& command, CostModel& model) {
-  const std::map<std::string, bool> on_off = {{"on", true}, {"off", false}};
+  const auto read = [&model](const std::string& text) {
+    model.corner_cutting = text == "on";
+  };
   command
-      .add_option("--corner-cutting", model.corner_cutting,
-                  "May a diagonal step pass between two blocked cells: on "
-                  "(default) or off")
-      ->transform(CLI::CheckedTransformer(on_off).description(""))
+      .add_option_function<std::string>(
+          "--corner-cutting", read,
+          "May a diagonal step pass between two blocked cells: on (default) or "
+          "off")
+      ->check(CLI::IsMember({"on", "off"}).description(""))
       ->type_name("on|off");
   command
       .add_option("--clearance", model.clearance_cells,
@@ -50,7 +53,7 @@ void AddCostModelOptions(CLI::App& command, CostModel& model) {
       ->type_name("N");
 }
 
-void AddMapOptions(CLI::App& command, MapArguments& arguments) {
+void AddMapFileOptions(CLI::App& command, MapArguments& arguments) {
   command.add_option("--map", arguments.path, "Terrain map to read")
       ->required()
       ->type_name("FILE");
@@ -59,6 +62,10 @@ void AddMapOptions(CLI::App& command, MapArguments& arguments) {
                   "multiterrapath, rugd, movingai, occupancy or a CSV file "
                   "id,name,cost,color (default: the map format's)")
       ->type_name("L");
+}
+
+void AddMapOptions(CLI::App& command, MapArguments& arguments) {
+  AddMapFileOptions(command, arguments);
   AddCostModelOptions(command, arguments.options.cost_model);
 }
 
@@ -91,10 +98,14 @@ void AddStrideOption(CLI::App& command, int& stride) {
       ->type_name("N");
 }
 
-void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
-  AddMapOptions(command, arguments.map);
+void AddEndOptions(CLI::App& command, ProblemArguments& arguments) {
   AddCellOption(command, "--start", arguments.start, "Start cell");
   AddCellOption(command, "--goal", arguments.goal, "Goal cell");
+}
+
+void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
+  AddMapOptions(command, arguments.map);
+  AddEndOptions(command, arguments);
 }
 
 Result<TerrainMap> LoadMap(const MapArguments& arguments) {

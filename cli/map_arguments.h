@@ -23,6 +23,9 @@ struct MapArguments {
   MapFileOptions options;
 };
 
+/// Adds --map and --legend.
+void AddMapFileOptions(CLI::App& command, MapArguments& arguments);
+
 /// Adds --map, --legend and the cost model.
 void AddMapOptions(CLI::App& command, MapArguments& arguments);
 
@@ -36,6 +39,9 @@ struct ProblemArguments {
   Cell start;
   Cell goal;
 };
+
+/// Adds --start and --goal.
+void AddEndOptions(CLI::App& command, ProblemArguments& arguments);
 
 /// Adds the map's options, --start and --goal.
 void AddProblemOptions(CLI::App& command, ProblemArguments& arguments);

@@ -35,10 +35,10 @@ void Show(const std::string& view) {
 
 int Watch(MonitorArguments& arguments) {
   const Status completed = arguments.bus.Complete();
-  if (!completed) return Fail(completed.error());
+  if (!completed) return Fail(completed.error(), kWrongUsage);
   const bus::StopSignal stop;
   const Result<bus::ChannelNames> channels = arguments.bus.Channels();
-  if (!channels) return Fail(channels.error());
+  if (!channels) return Fail(channels.error(), kWrongUsage);
   bus::Inbox inbox;
   Result<std::unique_ptr<bus::Bus>> opened =
       bus::Bus::Open(arguments.bus.lcm_url, *channels);

@@ -118,7 +118,6 @@ std::string MonitorNode::RouteLines(bus::Time now) const {
   if (!deployed_) {
     return text + "deployed   nothing heard; is terra-verifier running?\n";
   }
-  const double saving = deployed_->baseline_cost - deployed_->deployed_cost;
   text += Printed("request    %016llx, (%d, %d) to (%d, %d)\n",
                   static_cast<unsigned long long>(deployed_->request_id),
                   deployed_->start_x, deployed_->start_y, deployed_->goal_x,
@@ -131,11 +130,10 @@ std::string MonitorNode::RouteLines(bus::Time now) const {
                   Seconds(now - deployed_at_));
   if (deployed_->mode == deployed_t::MODE_BASELINE ||
       deployed_->mode == deployed_t::MODE_CANDIDATE) {
-    text += Printed("cost       %.3f; baseline %.3f, saving %.2f %%\n",
-                    deployed_->deployed_cost, deployed_->baseline_cost,
-                    deployed_->baseline_cost > 0
-                        ? 100 * saving / deployed_->baseline_cost
-                        : 0.0);
+    text += Printed(
+        "cost       %.3f; baseline %.3f, saving %.2f %%\n",
+        deployed_->deployed_cost, deployed_->baseline_cost,
+        SavingPercent(deployed_->baseline_cost, deployed_->deployed_cost));
   }
   return text;
 }

@@ -27,9 +27,10 @@ int RunOracle(const OracleArguments& arguments) {
   const std::chrono::duration<double> took =
       std::chrono::steady_clock::now() - begin;
   Route corners = found.found() ? CornersOf(found.cells) : Route{};
-  return PrintFoundRoute({found.status, std::move(corners), found.cost,
-                          found.expanded, took.count()},
-                         problem, *map, arguments.json);
+  return PrintFoundRoute(
+      {found.status, std::move(corners), found.cost, found.expanded,
+       took.count(), ": impassable cells lie on every way"},
+      problem, *map, arguments.json);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "cli/output.h"
 
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <iostream>
@@ -11,13 +12,19 @@
 
 namespace terra::cli {
 
-int Fail(const Error& error) {
+int Fail(const Error& error, int exit_code) {
   std::cerr << "terra: " << error.message << "\n";
-  return kCouldNot;
+  return exit_code;
 }
 
 nlohmann::json JsonCost(double cost) {
   return cost == kImpassable ? nlohmann::json(nullptr) : nlohmann::json(cost);
+}
+
+double SavingPercent(double baseline_cost, double cost) {
+  return baseline_cost > 0 && std::isfinite(baseline_cost)
+             ? 100 * (baseline_cost - cost) / baseline_cost
+             : 0;
 }
 
 nlohmann::json JsonRoute(const Route& route) {

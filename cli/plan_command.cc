@@ -1,5 +1,6 @@
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -26,8 +27,11 @@ int RunPlan(const PlanArguments& arguments) {
       *map, problem.start, problem.goal, arguments.lattice);
   const std::chrono::duration<double> took =
       std::chrono::steady_clock::now() - begin;
+  const std::string where = " on the lattice of stride " +
+                            std::to_string(arguments.lattice.stride) +
+                            "; try a smaller --stride";
   return PrintFoundRoute({plan.status, std::move(plan.waypoints), plan.cost,
-                          plan.expanded, took.count()},
+                          plan.expanded, took.count(), where},
                          problem, *map, arguments.json);
 }
 

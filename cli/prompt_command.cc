@@ -70,7 +70,8 @@ Status Write(const advisor::LlmRequest& request, const std::string& out) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) {
-    return Error{ErrorCode::kUnavailable, out + ": " + failed.message()};
+    return Error{ErrorCode::kUnavailable,
+                 out + ": the folder cannot be made: " + failed.message()};
   }
   int number = 0;
   for (const auto& picture : request.pictures) {

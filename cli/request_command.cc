@@ -53,21 +53,21 @@ Status Draw(const RequestNode& node, const RequestArguments& arguments) {
     picture.routes.push_back(PictureRoute{bus::WaypointsOf(*node.baseline()),
                                           kBaselineColor, "baseline"});
   }
-  if (HasRoute(node) && node.deployed()->mode == deployed_t::MODE_CANDIDATE) {
+  if (node.HasRoute() && node.deployed()->mode == deployed_t::MODE_CANDIDATE) {
     picture.routes.push_back(PictureRoute{bus::WaypointsOf(*node.deployed()),
                                           kCandidateColor, "deployed"});
   }
   return WritePicture(node.map().map()->map, picture, arguments.picture);
 }
 
-int FailRequest(const std::string& message) {
+int FailRequest(const std::string& message, int exit_code = kCouldNot) {
   std::cerr << "terra request: " << message << "\n";
-  return kCouldNot;
+  return exit_code;
 }
 
 int Ask(RequestArguments& arguments) {
   const Status completed = arguments.bus.Complete();
-  if (!completed) return FailRequest(completed.error().message);
+  if (!completed) return FailRequest(completed.error().message, kWrongUsage);
   RequestPlan plan;
   plan.request_id = bus::RandomId();
   plan.start = arguments.start;
@@ -84,7 +84,7 @@ int Ask(RequestArguments& arguments) {
   }
   const bus::StopSignal stop;
   const Result<bus::ChannelNames> channels = arguments.bus.Channels();
-  if (!channels) return FailRequest(channels.error().message);
+  if (!channels) return FailRequest(channels.error().message, kWrongUsage);
   bus::Inbox inbox;
   Result<std::unique_ptr<bus::Bus>> opened =
       bus::Bus::Open(arguments.bus.lcm_url, *channels);
@@ -102,15 +102,14 @@ int Ask(RequestArguments& arguments) {
                      -1, ' ', false, nlohmann::json::error_handler_t::replace)
               << "\n";
   }
-  if (!HasRoute(node)) return FailRequest(WhyNoRoute(node));
+  if (!node.HasRoute()) return FailRequest(WhyNoRoute(node));
   if (!arguments.json) PrintRequest(node);
   if (!arguments.picture.empty()) {
     const Status drawn = Draw(node, arguments);
     if (!drawn) return FailRequest(drawn.error().message);
   }
   if (arguments.need_advice && !node.advised()) {
-    FailRequest("no advice came; the baseline is deployed");
-    return kNoAdvice;
+    return FailRequest("no advice came; the baseline is deployed", kNoAdvice);
   }
   return kDone;
 }

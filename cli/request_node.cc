@@ -59,13 +59,11 @@ void RequestNode::OnDeployed(const deployed_t& message, bus::Time now) {
       message.request_id != plan_.request_id) {
     return;
   }
-  const bool has_route = message.mode == deployed_t::MODE_BASELINE ||
-                         message.mode == deployed_t::MODE_CANDIDATE;
-  if (has_route && !deployed_ms_) deployed_ms_ = MillisecondsSinceStart(now);
+  deployed_ = message;
+  if (HasRoute() && !deployed_ms_) deployed_ms_ = MillisecondsSinceStart(now);
   if (message.mode == deployed_t::MODE_CANDIDATE && !refined_ms_) {
     refined_ms_ = MillisecondsSinceStart(now);
   }
-  deployed_ = message;
 }
 
 void RequestNode::OnVerdict(const terra_msg::verdict_t& message,
@@ -79,6 +77,11 @@ void RequestNode::OnVerdict(const terra_msg::verdict_t& message,
     advisors_ = {};  // What was heard before is not of this answer.
     reason_until_ = now + kReasonPatience;
   }
+}
+
+bool RequestNode::HasRoute() const {
+  return deployed_ && (deployed_->mode == deployed_t::MODE_BASELINE ||
+                       deployed_->mode == deployed_t::MODE_CANDIDATE);
 }
 
 bool RequestNode::Answered() const {
@@ -120,7 +123,8 @@ double RequestNode::MillisecondsSinceStart(bus::Time now) const {
 bus::Time RequestNode::Advance(bus::Time now) {
   if (started_at_ == bus::kNever) started_at_ = now;
   if (repeat_.Due(now) && (!Answered() || plan_.keep)) out_.Send(request_);
-  const bool map_is_here = !plan_.want_map || map_.map() != nullptr;
+  const bool map_is_here =
+      !plan_.want_map || !HasRoute() || map_.map() != nullptr;
   const bool time_is_up = now >= started_at_ + plan_.wait;
   const bool map_time_is_up = now >= started_at_ + plan_.wait + kMapPatience;
   if (!plan_.keep && (Settled(now) || time_is_up) &&

@@ -27,7 +27,8 @@ struct RequestPlan {
 ///
 /// Repeats PLAN_REQUEST 5 times a second until a BASELINE and a DEPLOYED both
 /// name its id. Ends when a candidate is deployed, when an advisor's answer was
-/// refused or retained, when all advisors gave up, or when the time is up.
+/// refused or retained, when all advisors gave up, or when the time is up; and
+/// then only with the map, if it is wanted and there is a route to draw on it.
 class RequestNode : public bus::Node {
  public:
   RequestNode(const RequestPlan& plan, bus::Outbox& out);
@@ -50,6 +51,8 @@ class RequestNode : public bus::Node {
   }
   /// Did the gate judge any advice on this request, or deploy it?
   bool advised() const;
+  /// A route is deployed.
+  bool HasRoute() const;
   Latency baseline_ms() const { return baseline_ms_; }
   Latency deployed_ms() const { return deployed_ms_; }
   Latency refined_ms() const { return refined_ms_; }

@@ -75,12 +75,6 @@ void PrintWhyNone(const RequestNode& node) {
 
 }  // namespace
 
-bool HasRoute(const RequestNode& node) {
-  return node.deployed() &&
-         (node.deployed()->mode == deployed_t::MODE_BASELINE ||
-          node.deployed()->mode == deployed_t::MODE_CANDIDATE);
-}
-
 nlohmann::json RequestJson(const RequestNode& node) {
   nlohmann::json result;
   const auto& baseline = node.baseline();
@@ -93,7 +87,7 @@ nlohmann::json RequestJson(const RequestNode& node) {
       deployed ? Number(deployed->baseline_cost) : nlohmann::json();
   result["deployed_cost"] =
       deployed ? Number(deployed->deployed_cost) : nlohmann::json();
-  result["deployed"] = !HasRoute(node) ? "none"
+  result["deployed"] = !node.HasRoute() ? "none"
                        : deployed->mode == deployed_t::MODE_CANDIDATE
                            ? "candidate"
                            : "baseline";
@@ -126,17 +120,22 @@ nlohmann::json RequestJson(const RequestNode& node) {
 
 void PrintRequest(const RequestNode& node) {
   const deployed_t& deployed = *node.deployed();
-  std::printf("baseline   %10.3f   %s, %.2f ms after the request\n",
-              deployed.baseline_cost,
-              Printable(node.baseline()->planner, kShownName).c_str(),
-              node.baseline_ms().value_or(0));
-  const double saving = deployed.baseline_cost - deployed.deployed_cost;
+  if (node.baseline()) {
+    std::printf("baseline   %10.3f   %s, %.2f ms after the request\n",
+                deployed.baseline_cost,
+                Printable(node.baseline()->planner, kShownName).c_str(),
+                node.baseline_ms().value_or(0));
+  } else {
+    std::printf("baseline   %10.3f   heard by the gate alone\n",
+                deployed.baseline_cost);
+  }
   std::printf(
       "deployed   %10.3f   %s%s\n", deployed.deployed_cost,
       Printable(deployed.source, kShownName).c_str(),
       deployed.mode == deployed_t::MODE_CANDIDATE ? "'s route" : "'s baseline");
-  std::printf("saving     %10.3f   %.2f %%\n", saving,
-              100 * saving / deployed.baseline_cost);
+  std::printf("saving     %10.3f   %.2f %%\n",
+              deployed.baseline_cost - deployed.deployed_cost,
+              SavingPercent(deployed.baseline_cost, deployed.deployed_cost));
   std::printf("latency    baseline deployed after %.2f ms",
               node.deployed_ms().value_or(0));
   if (node.refined_ms()) {

@@ -8,10 +8,7 @@
 
 namespace terra::cli {
 
-/// Has the gate deployed a route for the request?
-bool HasRoute(const RequestNode& node);
-
-/// Why there is none, in a sentence.
+/// Why no route is deployed, in a sentence.
 std::string WhyNoRoute(const RequestNode& node);
 
 /// What `terra request` tells, as JSON; null for what never came.

@@ -115,8 +115,12 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
   const auto one = std::make_shared<VerifyArguments>();
   const auto many = std::make_shared<VerifyDatasetArguments>();
 
+  const auto model = std::make_shared<CostModel>();
+  AddCostModelOptions(command, *model);
+
   CLI::App& single = *command.add_option_group("one route");
-  AddProblemOptions(single, one->problem);
+  AddMapFileOptions(single, one->problem.map);
+  AddEndOptions(single, one->problem);
   AddRouteOption(single, "--baseline", one->baseline,
                  "Baseline, as \"[(x, y), ...]\"");
   single.add_option("--candidate", one->candidate, "Proposed route, likewise")
@@ -127,7 +131,9 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
   CLI::App& dataset = *command.add_option_group("the routes of a dataset");
   AddVerifyDatasetOptions(dataset, *many);
 
-  command.require_option(1);
+  // What a group needs is asked for only where one of its options is given.
+  single.needs(single.get_option("--map"));
+  dataset.needs(dataset.get_option("--dataset"));
   command.footer(
       "The exit code is 0 for every verdict, also for a rejected candidate.\n"
       "Examples:\n"
@@ -135,9 +141,16 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
       "      --baseline \"[(2, 2), (50, 50), (90, 40)]\" \\\n"
       "      --candidate \"[(2, 2), (90, 40)]\"\n"
       "  terra verify --dataset hard --routes routes.csv --out verdicts.csv");
-  command.callback([one, many, &single, &exit_code] {
-    exit_code =
-        single.count_all() > 0 ? RunVerify(*one) : RunVerifyDataset(*many);
+  command.callback([one, many, model, &single, &dataset, &exit_code] {
+    const bool is_single = single.count_all() > 0;
+    if (is_single == (dataset.count_all() > 0)) {
+      throw CLI::ValidationError(
+          "verify",
+          "give --map, --start, --goal, --baseline and --candidate, or "
+          "--dataset, --routes and --out");
+    }
+    one->problem.map.options.cost_model = *model;
+    exit_code = is_single ? RunVerify(*one) : RunVerifyDataset(*many, *model);
   });
 }
 

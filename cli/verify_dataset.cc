@@ -91,7 +91,8 @@ std::string VerdictsCsv(const CsvTable& routes,
   return text;
 }
 
-Status VerifyDataset(const VerifyDatasetArguments& arguments) {
+Status VerifyDataset(const VerifyDatasetArguments& arguments,
+                     const CostModel& model) {
   const Result<Dataset> dataset = ReadDataset(arguments.dataset);
   if (!dataset.ok()) return dataset.error();
   const Result<CsvTable> routes =
@@ -100,7 +101,7 @@ Status VerifyDataset(const VerifyDatasetArguments& arguments) {
   const Result<WorkByMap> work = SortByMap(*dataset, *routes, arguments.routes);
   if (!work.ok()) return work.error();
   const Result<std::vector<RouteCheck>> checks =
-      CheckAll(*dataset, *routes, *work, arguments.cost_model);
+      CheckAll(*dataset, *routes, *work, model);
   if (!checks.ok()) return checks.error();
   return WriteWholeFile(arguments.out, VerdictsCsv(*routes, *checks));
 }
@@ -119,11 +120,11 @@ void AddVerifyDatasetOptions(CLI::App& command,
       .add_option("--out", arguments.out, "CSV to write: case_id,k,code,cost")
       ->required()
       ->type_name("V.csv");
-  AddCostModelOptions(command, arguments.cost_model);
 }
 
-int RunVerifyDataset(const VerifyDatasetArguments& arguments) {
-  const Status done = VerifyDataset(arguments);
+int RunVerifyDataset(const VerifyDatasetArguments& arguments,
+                     const CostModel& model) {
+  const Status done = VerifyDataset(arguments, model);
   return done.ok() ? kDone : Fail(done.error());
 }
 

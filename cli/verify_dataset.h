@@ -15,7 +15,6 @@ struct VerifyDatasetArguments {
   std::string dataset;
   std::string routes;  ///< CSV: case_id, k, route.
   std::string out;     ///< CSV: case_id, k, code, cost.
-  CostModel cost_model;
 };
 
 void AddVerifyDatasetOptions(CLI::App& command,
@@ -23,6 +22,7 @@ void AddVerifyDatasetOptions(CLI::App& command,
 
 /// Checks every route and writes the verdicts in the order of the routes; code
 /// `feasible` or what failed, cost `inf` then. Returns the exit code.
-int RunVerifyDataset(const VerifyDatasetArguments& arguments);
+int RunVerifyDataset(const VerifyDatasetArguments& arguments,
+                     const CostModel& model);
 
 }  // namespace terra::cli

@@ -13,6 +13,7 @@
 #include <lcm/lcm.h>
 #include <sys/eventfd.h>
 
+#include "bus/bus.h"
 #include "bus/envelope.h"
 #include "bus/lcm_url.h"
 #include "logger/log_event.h"
@@ -41,11 +42,6 @@ std::int64_t MonotonicMicroseconds() {
       .count();
 }
 
-Error Unusable(const std::string& url, const std::string& why) {
-  return Error{ErrorCode::kUnavailable,
-               "cannot hear the bus " + url + ": " + why};
-}
-
 }  // namespace
 
 std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
@@ -67,14 +63,15 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
                                              EventQueue& queue) {
   lcm_t* lcm = lcm_create(
       WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()).c_str());
-  if (lcm == nullptr) return Unusable(urls.deployed, "LCM refuses it");
+  if (lcm == nullptr) return bus::WhyUnusable(urls.deployed, "LCM refuses it");
   std::unique_ptr<BusTap> tap(new BusTap(queue, lcm, eventfd(0, EFD_CLOEXEC)));
-  if (tap->stop_fd_ < 0) return Unusable(urls.deployed, std::strerror(errno));
+  if (tap->stop_fd_ < 0)
+    return bus::WhyUnusable(urls.deployed, std::strerror(errno));
   lcm_subscription_t* subscribed =
       lcm_subscribe(lcm, ".*", &BusTap::OnMessage, tap.get());
   if (subscribed == nullptr || lcm_get_fileno(lcm) < 0) {
-    return Unusable(urls.deployed,
-                    "what is sent does not come back (a firewall?)");
+    return bus::WhyUnusable(urls.deployed,
+                            "what is sent does not come back (a firewall?)");
   }
   lcm_subscription_set_queue_capacity(subscribed, kLcmQueueCapacity);
   if (urls.advice != urls.deployed && urls.advice.starts_with("udpm://")) {

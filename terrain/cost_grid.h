@@ -10,8 +10,8 @@
 
 namespace terra {
 
-/// The costs of a map's cells inside a border of blocked ones: what searches
-/// and route walks read, so that they need no bounds check for a single step.
+/// The costs of a map's cells inside a border of blocked ones: what the searches
+/// on all cells read, so that they need no bounds check for a single step.
 ///
 /// Each cell is 16 bits. The low 15 are its cost code, 0 where it is blocked:
 /// the cost in exact units (CostTable::units) when holds_units(), else the cost

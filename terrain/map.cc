@@ -98,7 +98,8 @@ Result<TerrainMap> TerrainMap::Create(ByteRaster ids, Legend legend,
                      ToString(Cell{static_cast<int>(index % ids.cols()),
                                    static_cast<int>(index / ids.cols())}) +
                      " has terrain id " + std::to_string(*unknown) +
-                     ", which the legend does not have"};
+                     ", which the legend does not have; give the map's own "
+                     "legend, or correct the map"};
   }
   return TerrainMap(std::move(ids), std::move(legend), model);
 }

@@ -50,7 +50,7 @@ class TerrainMap {
   /// Cost class of each cell, clearance included; 0 = blocked.
   const ByteRaster& classes() const { return classes_; }
   const CostTable& costs() const { return costs_; }
-  /// The same costs with a blocked border, for searches and route walks.
+  /// The same costs with a blocked border, for searches on all cells.
   const CostGrid& cost_grid() const { return cost_grid_; }
 
   /// The cell must be inside the map.

@@ -123,9 +123,12 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
   if (last.beyond_keys) {
     attempt(Workspace::Attempt(workspace_->doubles, query));
   }
-  if (last.found) {
+  const double cost =
+      last.found ? WalkRoute(map, last.cells).cost : kImpassable;
+  // Keys are coarser than costs: one below the bound may cost a little more.
+  if (last.found && cost <= options.upper_bound * kAboveRounding) {
     result.cells = std::move(last.cells);
-    result.cost = WalkRoute(map, result.cells).cost;
+    result.cost = cost;
   } else {
     result.status = SearchStatus::kNoRoute;
   }

@@ -62,28 +62,66 @@ InstructionSet BestInstructionSet() {
 SearchAttempt SweepSearch::Run(const TerrainMap& map, const NarrowKeys& keys,
                                Cell start, Cell goal, Key bound,
                                InstructionSet set) {
-  const CostGrid& grid = map.cost_grid();
   const OctileBound<NarrowKeys> to_goal(keys, goal);
   SearchAttempt attempt;
   if (to_goal(start.x, start.y) >= bound) {
     attempt.beyond_keys = bound == NarrowKeys::kLimit;
     return attempt;
   }
-  const int rows = map.height() + 2;
+  SweepTask task = Prepare(map, keys, start, goal);
+  task.bound = bound;
+  RunKernel(task, set);
+  attempt.found = task.found;
+  attempt.expanded = task.visited;
+  attempt.passes = task.passes;
+  if (task.found) {
+    attempt.cells = ReadPath(map, keys, start, goal, task);
+  } else if (bound == NarrowKeys::kLimit) {
+    attempt.beyond_keys = MayHaveDropped(task, keys, to_goal);
+  }
+  return attempt;
+}
+
+// What the kernel is told of map and ends, with memory for its keys.
+SweepTask SweepSearch::Prepare(const TerrainMap& map, const NarrowKeys& keys,
+                               Cell start, Cell goal) {
+  const CostGrid& grid = map.cost_grid();
+  SweepTask task{.cells = grid.data(),
+                 .code_mask = CostGrid::kCodeMask,
+                 .stride = grid.stride(),
+                 .rows = map.height() + 2,
+                 .first_column = CostGrid::kBorder,
+                 .last_column = CostGrid::kBorder + map.width() - 1,
+                 .corner_cutting = map.cost_model().corner_cutting,
+                 .straight_per_unit = keys.Straight(1),
+                 .diagonal_per_unit = keys.Diagonal(1),
+                 .limit = NarrowKeys::kLimit,
+                 .start_row = start.y + 1,
+                 .start_column = start.x + CostGrid::kBorder,
+                 .goal_row = goal.y + 1,
+                 .goal_column = goal.x + CostGrid::kBorder};
   if (capacity_ < grid.size()) {
     keys_.reset(new Key[grid.size()]);
     capacity_ = grid.size();
   }
-  const int words_per_row = grid.stride() / kFewestLanes / 64 + 1;
-  pending_.resize(
-      std::max(pending_.size(), static_cast<std::size_t>(rows) * 2 *
-                                    static_cast<std::size_t>(words_per_row)));
-  const auto columns = static_cast<std::size_t>(grid.stride());
-  octile_.assign(2 * (columns + static_cast<std::size_t>(rows)), 0);
+  task.keys = keys_.get();
+  task.words_per_row = grid.stride() / kFewestLanes / 64 + 1;
+  const auto words = static_cast<std::size_t>(task.rows) * 2 *
+                     static_cast<std::size_t>(task.words_per_row);
+  pending_.resize(std::max(pending_.size(), words));
+  task.pending = pending_.data();
+  FillOctileTables(map, keys, goal, task);
+  return task;
+}
+
+void SweepSearch::FillOctileTables(const TerrainMap& map,
+                                   const NarrowKeys& keys, Cell goal,
+                                   SweepTask& task) {
+  octile_.assign(2 * static_cast<std::size_t>(task.stride + task.rows), 0);
   Key* const along_x = octile_.data();
-  Key* const turn_x = along_x + columns;
-  Key* const along_y = turn_x + columns;
-  Key* const turn_y = along_y + rows;
+  Key* const turn_x = along_x + task.stride;
+  Key* const along_y = turn_x + task.stride;
+  Key* const turn_y = along_y + task.rows;
   const Key along = keys.min_straight();
   const Key turn = keys.min_diagonal() - keys.min_straight();
   for (int x = 0; x < map.width(); ++x) {
@@ -96,43 +134,23 @@ SearchAttempt SweepSearch::Run(const TerrainMap& map, const NarrowKeys& keys,
     along_y[y + 1] = distance * along;
     turn_y[y + 1] = distance * turn;
   }
-  SweepTask task{.cells = grid.data(),
-                 .code_mask = CostGrid::kCodeMask,
-                 .stride = grid.stride(),
-                 .rows = rows,
-                 .first_column = CostGrid::kBorder,
-                 .last_column = CostGrid::kBorder + map.width() - 1,
-                 .corner_cutting = map.cost_model().corner_cutting,
-                 .straight_per_unit = keys.Straight(1),
-                 .diagonal_per_unit = keys.Diagonal(1),
-                 .limit = NarrowKeys::kLimit,
-                 .start_row = start.y + 1,
-                 .start_column = start.x + CostGrid::kBorder,
-                 .goal_row = goal.y + 1,
-                 .goal_column = goal.x + CostGrid::kBorder,
-                 .along_x = along_x,
-                 .turn_x = turn_x,
-                 .along_y = along_y,
-                 .turn_y = turn_y,
-                 .keys = keys_.get(),
-                 .pending = pending_.data(),
-                 .words_per_row = words_per_row,
-                 .bound = bound};
-  RunKernel(task, set);
-  attempt.found = task.found;
-  attempt.expanded = task.visited;
-  attempt.passes = task.passes;
-  if (task.found) {
-    const auto key_of = [&](std::size_t index) {
-      const auto row = static_cast<int>(index / columns);
-      return row >= task.first_row && row <= task.last_row ? keys_[index]
-                                                           : NarrowKeys::kLimit;
-    };
-    attempt.cells = ExtractPath(map, keys, start, goal, key_of);
-  } else if (bound == NarrowKeys::kLimit) {
-    attempt.beyond_keys = MayHaveDropped(task, keys, to_goal);
-  }
-  return attempt;
+  task.along_x = along_x;
+  task.turn_x = turn_x;
+  task.along_y = along_y;
+  task.turn_y = turn_y;
+}
+
+// Rows that the sweep did not come to still hold keys of earlier searches.
+CellPath SweepSearch::ReadPath(const TerrainMap& map, const NarrowKeys& keys,
+                               Cell start, Cell goal,
+                               const SweepTask& task) const {
+  const auto key_of = [&](std::size_t index) {
+    const auto row =
+        static_cast<int>(index / static_cast<std::size_t>(task.stride));
+    return row >= task.first_row && row <= task.last_row ? keys_[index]
+                                                         : NarrowKeys::kLimit;
+  };
+  return ExtractPath(map, keys, start, goal, key_of);
 }
 
 std::size_t SweepSearch::bytes() const {

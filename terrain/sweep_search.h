@@ -12,6 +12,8 @@
 
 namespace terra {
 
+struct SweepTask;
+
 /// Instruction sets that the sweep is compiled for.
 enum class InstructionSet { kPortable, kAvx2, kAvx512 };
 
@@ -37,12 +39,19 @@ class SweepSearch {
   std::size_t bytes() const;
 
  private:
+  SweepTask Prepare(const TerrainMap& map, const NarrowKeys& keys, Cell start,
+                    Cell goal);
+  void FillOctileTables(const TerrainMap& map, const NarrowKeys& keys,
+                        Cell goal, SweepTask& task);
+  CellPath ReadPath(const TerrainMap& map, const NarrowKeys& keys, Cell start,
+                    Cell goal, const SweepTask& task) const;
+
   // Not a vector: its elements would be cleared, which takes as long as a
   // search.
   std::unique_ptr<std::uint32_t[]> keys_;
   std::size_t capacity_ = 0;
-  std::vector<std::uint64_t> pending_;
-  std::vector<std::uint32_t> octile_;
+  std::vector<std::uint64_t> pending_;  // SweepTask::pending.
+  std::vector<std::uint32_t> octile_;   // SweepTask::along_x and the rest.
 };
 
 }  // namespace terra

@@ -30,18 +30,19 @@ struct SweepTask {
   /// The octile bound of a cell is the larger of along_x + turn_y and
   /// turn_x + along_y: its distances in x and y times a straight step of the
   /// lowest cost (along) and times what a diagonal step costs more (turn).
-  const std::uint32_t* along_x;  ///< By column.
-  const std::uint32_t* turn_x;
-  const std::uint32_t* along_y;  ///< By row.
-  const std::uint32_t* turn_y;
+  const std::uint32_t* along_x = nullptr;  ///< By column.
+  const std::uint32_t* turn_x = nullptr;
+  const std::uint32_t* along_y = nullptr;  ///< By row.
+  const std::uint32_t* turn_y = nullptr;
 
-  std::uint32_t* keys;  ///< Room for all cells; nothing need be cleared.
+  /// Room for all cells; nothing need be cleared.
+  std::uint32_t* keys = nullptr;
   /// Room for 2 * rows * words_per_row; nothing need be cleared.
-  std::uint64_t* pending;
-  int words_per_row;  ///< At least stride / kFewestLanes / 64 + 1.
+  std::uint64_t* pending = nullptr;
+  int words_per_row = 0;  ///< At least stride / kFewestLanes / 64 + 1.
 
   /// In: paths at or above it are not wanted. Out: the goal's key, if found.
-  std::uint32_t bound;
+  std::uint32_t bound = 0;
   bool found = false;
   int first_row = 0;  ///< Rows in which `keys` was written.
   int last_row = 0;

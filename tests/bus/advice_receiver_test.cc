@@ -222,6 +222,20 @@ TEST(AdviceReceiver, CountsWhatTheKernelDropped) {
   EXPECT_GT(receiver->counters().lost_in_kernel, 0U);
 }
 
+TEST(AdviceReceiver, ABusyPortIsNamed) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(17606);
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const auto receiver =
+      AdviceReceiver::Open("udpm://239.255.76.67:17606?ttl=0", "A");
+  close(fd);
+  ASSERT_FALSE(receiver);
+  EXPECT_THAT(receiver.error().message,
+              ::testing::HasSubstr("17606 is taken by another program"));
+}
+
 TEST(AdviceReceiver, RefusesOtherUrlsWithAReason) {
   for (const char* url : {"memq://", "file://x.log", "udpm://10.0.0.1:7667",
                           "udpm://239.255.76.67:66000", ""}) {

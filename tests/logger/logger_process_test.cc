@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include "logger/log_info.h"
 #include "tests/support/child_process.h"
@@ -227,6 +229,24 @@ TEST_F(LoggerProcess, AFullDiskIsReportedOnTheBusAndInTheExitCode) {
   ASSERT_TRUE(failing);
   EXPECT_NE(failing->last_error.find("No space left"), std::string::npos);
   EXPECT_EQ(logger.Terminate(), 1);
+}
+
+TEST_F(LoggerProcess, ABusyPortEndsItWithTheReason) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  const testing::RunResult result = testing::RunToEnd(
+      {ProgramPath("terra-logger"), "--out", folder_.Path("log"), "--lcm-url",
+       "udpm://239.255.76.67:" + port + "?ttl=0"});
+  close(fd);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.output.find(port + " is taken by another program"),
+            std::string::npos)
+      << result.output;
 }
 
 TEST_F(LoggerProcess, AFolderWithoutPermissionEndsItWithTheReason) {

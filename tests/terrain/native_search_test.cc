@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "terrain/builtin_legends.h"
 #include "terrain/legend.h"
 #include "terrain/map.h"
 #include "tests/support/random_map.h"
@@ -11,9 +12,11 @@
 namespace terra {
 namespace {
 
+using testing::AllSearchWays;
 using testing::AllWaysAgree;
 using testing::Random;
 using testing::RandomMapKind;
+using testing::SearchWay;
 
 CostModel RandomCostModel(Random& random) {
   return CostModel{.corner_cutting = !random.OneIn(3),
@@ -40,14 +43,20 @@ bool HasPassableCell(const TerrainMap& map) {
   return (map.classes() != 0).any();
 }
 
-void ExpectAgreementOnRandomMaps(std::uint64_t seed, int count, int max_side,
-                                 double smallest_part, int max_parts = 400) {
+struct MapSizes {
+  int max_width;
+  int max_height;
+};
+
+void ExpectAgreementOnRandomMaps(std::uint64_t seed, int count, MapSizes sizes,
+                                 double smallest_part = 0,
+                                 int max_parts = 400) {
   Random random(seed);
   for (int i = 0; i < count; ++i) {
     const auto kind = static_cast<RandomMapKind>(random.Int(0, 2));
-    TerrainMap map =
-        RandomMap(random, random.Int(1, max_side), random.Int(1, max_side),
-                  kind, RandomCostModel(random));
+    TerrainMap map = RandomMap(random, random.Int(1, sizes.max_width),
+                               random.Int(1, sizes.max_height), kind,
+                               RandomCostModel(random));
     if (smallest_part != 0) {
       map = WithRandomCosts(random, map, max_parts, smallest_part);
     }
@@ -59,26 +68,76 @@ void ExpectAgreementOnRandomMaps(std::uint64_t seed, int count, int max_side,
   }
 }
 
-TEST(NativeSearchTest, FindsTheReferenceCostOnSmallMaps) {
-  ExpectAgreementOnRandomMaps(1, 9000, 24, 0);
+// AllWaysAgree forces them one by one. (A few of the maps have no passable cell,
+// or start and goal in one place.)
+TEST(NativeSearchTest, EachWayFindsTheReferenceCostOn12000SmallMaps) {
+  ExpectAgreementOnRandomMaps(1, 12'500, {24, 24});
 }
 
 TEST(NativeSearchTest, FindsTheReferenceCostOnLargerMaps) {
-  ExpectAgreementOnRandomMaps(2, 1000, 90, 0);
+  ExpectAgreementOnRandomMaps(2, 1000, {90, 90});
 }
 
 TEST(NativeSearchTest, FindsTheReferenceCostWithCostsInTenths) {
-  ExpectAgreementOnRandomMaps(3, 1500, 40, 0.1);
+  ExpectAgreementOnRandomMaps(3, 1500, {40, 40}, 0.1);
 }
 
 TEST(NativeSearchTest, FindsTheReferenceCostWithoutExactUnits) {
-  ExpectAgreementOnRandomMaps(4, 1500, 40, 0.0123456789);
+  ExpectAgreementOnRandomMaps(4, 1500, {40, 40}, 0.0123456789);
+}
+
+// Rows of more blocks than a word has bits, for each width of vectors.
+TEST(NativeSearchTest, FindsTheReferenceCostOnWideMaps) {
+  ExpectAgreementOnRandomMaps(6, 60, {2500, 8});
+}
+
+// By less than narrow keys can tell.
+TEST(NativeSearchTest, ABoundBelowTheOptimumLeavesNoRoute) {
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const TerrainMap map =
+        RandomMap(random, random.Int(2, 40), random.Int(2, 40),
+                  RandomMapKind::kRectangles, RandomCostModel(random));
+    if (!HasPassableCell(map)) continue;
+    const Cell start = RandomPassableCell(random, map);
+    const Cell goal = RandomPassableCell(random, map);
+    const double optimum = NativeSearch(map, start, goal).cost;
+    if (start == goal || optimum == kImpassable) continue;
+    for (SearchWay way : AllSearchWays()) {
+      way.options.upper_bound = (1 - 1e-8) * optimum;
+      ASSERT_EQ(NativeSearch(map, start, goal, way.options).status,
+                SearchStatus::kNoRoute)
+          << way.name << ", map " << i;
+    }
+  }
 }
 
 // Few steps lead beyond narrow keys: their sums must neither wrap around nor
 // lose paths.
 TEST(NativeSearchTest, FindsTheReferenceCostWithTheDearestUnitsThatFitACode) {
-  ExpectAgreementOnRandomMaps(5, 1500, 24, 1, CostGrid::kCodeMask);
+  ExpectAgreementOnRandomMaps(5, 1500, {24, 24}, 1, CostGrid::kCodeMask);
+}
+
+// Sets of blocks are words of 64 bits, and a word's last block touches the next
+// word's first. Walls at all these places, with gaps that only a diagonal step
+// takes, let nothing else lead over.
+TEST(NativeSearchTest, CrossesFromWordToWordOnADiagonalStepAlone) {
+  constexpr std::uint8_t kWall = 11;
+  constexpr int kFewestCellsOfAWord = 64 * 4;
+  ByteRaster ids = ByteRaster::Zero(3, 9 * kFewestCellsOfAWord);
+  for (int i = 1; i < 9; ++i) {
+    const Eigen::Index x = Eigen::Index{i} * kFewestCellsOfAWord;
+    ids.middleCols(x - 1, 2) = kWall;
+    ids(1, x - 1) = 0;
+    ids(i % 2 == 0 ? 0 : 2, x) = 0;
+  }
+  const TerrainMap map =
+      TerrainMap::Create(ids, MultiTerraPathLegend()).value();
+  const Cell west{0, 0};
+  const Cell east{map.width() - 1, 2};
+  ASSERT_TRUE(NativeSearch(map, west, east).found());
+  EXPECT_TRUE(AllWaysAgree(map, west, east));
+  EXPECT_TRUE(AllWaysAgree(map, east, west));
 }
 
 TEST(NativeSearchTest, FindsTheOnlyWayWhereItsLastStepLeavesNarrowKeys) {

@@ -15,13 +15,14 @@ struct SearchWay {
   NativeSearchOptions options;
 };
 
-/// Every way there is: methods, key widths, and each instruction set that this
-/// machine has.
+/// Every way there is: A* with each width of keys; sweep and automatic choice
+/// with each instruction set that this machine has.
 std::vector<SearchWay> AllSearchWays();
 
-/// Says whether every way, with and without the optimum as upper bound, finds
-/// what ReferenceSearch finds: the same cost, on a path of single steps that
-/// the cost rule accepts at that cost.
+/// Says whether every way, without an upper bound, with the optimum as one and
+/// with a dearer one, finds what ReferenceSearch finds: the same cost, on a
+/// path of single steps that the cost rule accepts at that cost. A way that
+/// does not use the method it is to use has failed too.
 ::testing::AssertionResult AllWaysAgree(const TerrainMap& map, Cell start,
                                         Cell goal);
 

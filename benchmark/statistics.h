@@ -26,8 +26,7 @@ struct Cluster {
 };
 
 /// How many resamples are drawn of so many clusters: 10,000; of more than
-/// 100,000 clusters 1,000, whose intervals differ by less than what tables
-/// print.
+/// 100,000 clusters 1,000 (docs/decisions.md, 19).
 constexpr int NumResamples(std::size_t clusters) {
   return clusters > 100'000 ? 1'000 : 10'000;
 }

@@ -47,9 +47,27 @@ std::optional<std::string> Base64Decode(std::string_view text) {
 }
 
 std::string Sha256Hex(std::string_view bytes) {
+  Sha256 digest;
+  digest.Add(bytes);
+  return digest.Hex();
+}
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+  TERRA_REQUIRE(context_ != nullptr);
+  TERRA_REQUIRE(EVP_DigestInit_ex(context_, EVP_sha256(), nullptr) == 1);
+}
+
+Sha256::~Sha256() {
+  EVP_MD_CTX_free(context_);
+}
+
+void Sha256::Add(std::string_view bytes) {
+  TERRA_REQUIRE(EVP_DigestUpdate(context_, bytes.data(), bytes.size()) == 1);
+}
+
+std::string Sha256::Hex() {
   std::array<unsigned char, 32> digest{};
-  TERRA_REQUIRE(EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr,
-                           EVP_sha256(), nullptr) == 1);
+  TERRA_REQUIRE(EVP_DigestFinal_ex(context_, digest.data(), nullptr) == 1);
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string hex;
   for (const unsigned char byte : digest) {

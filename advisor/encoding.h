@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;  // Of OpenSSL.
+
 namespace terra::advisor {
 
 /// RFC 4648 base64 with padding, without line breaks.
@@ -15,6 +17,22 @@ std::optional<std::string> Base64Decode(std::string_view text);
 
 /// SHA-256 in 64 hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);
+
+/// The same of bytes that come in parts.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+
+  void Add(std::string_view bytes);
+  /// Of all that was added; once.
+  std::string Hex();
+
+ private:
+  evp_md_ctx_st* context_;
+};
 
 /// Zstandard. Decompress gives none for damaged input and for more than
 /// `max_bytes` of content, whatever the header claims.

@@ -40,7 +40,7 @@ struct ExportedBatch {
 ///
 /// Errors: a provider without batches; a map that cannot be read; a folder that
 /// holds a batch already or cannot be written.
-Result<ExportedBatch> ExportBatch(const Dataset& dataset,
+Result<ExportedBatch> ExportBatch(const DatasetFolder& dataset,
                                   const RunOptions& options,
                                   const advisor::LlmBackendOptions& llm,
                                   const BatchFolder& folder);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 
@@ -142,7 +143,7 @@ Result<std::unique_ptr<Exporter>> MakeExporter(
   return made;
 }
 
-Status ExportCase(const Dataset& dataset, const DatasetCase& c,
+Status ExportCase(const DatasetFolder& dataset, const DatasetCase& c,
                   const RunOptions& options,
                   const advisor::MethodOptions& method,
                   const advisor::ReferencePool* pool, Exporter& exporter) {
@@ -167,24 +168,27 @@ Status ExportCase(const Dataset& dataset, const DatasetCase& c,
 
 }  // namespace
 
-Result<ExportedBatch> ExportBatch(const Dataset& dataset,
+Result<ExportedBatch> ExportBatch(const DatasetFolder& dataset,
                                   const RunOptions& options,
                                   const advisor::LlmBackendOptions& llm,
                                   const BatchFolder& folder) {
+  const Result<CaseSurvey> survey = SurveyCases(dataset, options.cases);
+  if (!survey.ok()) return survey.error();
+  const CaseList cases{dataset.folder, options.cases, {}};
+  Result<CaseCursor> cursor = CaseCursor::Open(cases);
+  if (!cursor.ok()) return cursor.error();
   const auto pool = advisor::LoadReferences(llm.references);
   if (!pool.ok()) return pool.error();
   auto exporter = MakeExporter(llm.service, folder);
   if (!exporter.ok()) return exporter.error();
   Exporter& out = **exporter;
-  const std::unordered_set<std::string> chosen(options.cases.begin(),
-                                               options.cases.end());
-  Progress progress(
-      "export", static_cast<std::int64_t>(chosen.empty() ? dataset.cases.size()
-                                                         : chosen.size()));
-  for (const DatasetCase& c : dataset.cases) {
-    if (!chosen.empty() && !chosen.contains(c.case_id)) continue;
+  Progress progress("export", survey->num_selected);
+  for (;;) {
+    const Result<std::optional<DatasetCase>> c = cursor->Next();
+    if (!c.ok()) return c.error();
+    if (!c->has_value()) break;
     const Status written =
-        ExportCase(dataset, c, options, llm.method, pool->get(), out);
+        ExportCase(dataset, **c, options, llm.method, pool->get(), out);
     if (!written) return written.error();
     progress.Advance();
   }

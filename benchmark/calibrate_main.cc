@@ -59,15 +59,16 @@ std::vector<tb::GapSummary> Measure(tb::Subset subset, std::uint64_t seed,
                                     int count,
                                     const tb::MapParameters& parameters) {
   const tb::GapOptions options;
-  std::vector<terra::DatasetCase> cases(static_cast<std::size_t>(count));
-  std::vector<tb::CaseGap> gaps(cases.size());
+  std::vector<tb::CaseGap> gaps(static_cast<std::size_t>(count));
   tb::ParallelFor(count, options.jobs, [&](std::int64_t i) {
     const tb::GeneratedCase drawn =
         tb::GenerateCase(subset, seed, static_cast<int>(i), parameters);
     gaps[static_cast<std::size_t>(i)] =
         tb::MeasureGap(drawn.map, drawn.start, drawn.goal, options);
   });
-  return tb::SummarizeGaps(cases, gaps, options);
+  tb::GapSummaries summaries(options.strides);
+  for (const tb::CaseGap& gap : gaps) summaries.Add("", gap);
+  return summaries.Rows();
 }
 
 void Print(tb::Subset subset, const std::vector<tb::GapSummary>& rows) {

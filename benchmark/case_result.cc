@@ -114,47 +114,6 @@ class RowReader {
   int fault_ = -1;
 };
 
-Result<CaseResult> ParseRow(const CsvRow& row, const std::string& path,
-                            int line) {
-  CaseResult r;
-  RowReader reader(row.fields);
-  reader.Text(r.case_id);
-  reader.Text(r.group);
-  reader.Text(r.sequence);
-  reader.Int(r.map_id);
-  reader.Int(r.repeat);
-  r.kind = static_cast<AttemptKind>(reader.Choice(kKinds));
-  r.code = reader.CodeField();
-  r.form = static_cast<AnswerStyle>(reader.Choice(kForms));
-  reader.Number(r.baseline_cost);
-  reader.Number(r.oracle_cost);
-  reader.Number(r.candidate_cost);
-  reader.Number(r.final_cost);
-  reader.Waypoints(r.candidate_route);
-  reader.Waypoints(r.final_route);
-  reader.Number(r.t_prep);
-  reader.Number(r.t_llm);
-  reader.Number(r.t_det);
-  reader.Int(r.tries);
-  reader.Int(r.tokens_in);
-  reader.Int(r.tokens_out);
-  reader.Number(r.spend);
-  reader.Text(r.request_hash);
-  if (row.fields.size() > kNumUsual) {
-    reader.Int(r.candidates);
-    reader.Int(r.candidates_lower);
-    reader.Int(r.candidates_invalid);
-  }
-  if (reader.fault() < 0) return r;
-  const auto column = static_cast<std::size_t>(reader.fault());
-  return Error{ErrorCode::kInvalid, path + ":" + std::to_string(line) + ": '" +
-                                        row.fields[column] + "' is no " +
-                                        std::string(kColumns[column])};
-}
-
-// Rows parsed together; a row has no line feed inside.
-constexpr int kRowsAtOnce = 256;
-
 }  // namespace
 
 std::string_view AttemptKindName(AttemptKind kind) {
@@ -219,31 +178,50 @@ std::string ResultLine(const CaseResult& r, ResultColumns columns) {
   return CsvLine(fields);
 }
 
-Status ReadResults(const std::string& path,
-                   const std::function<void(CaseResult)>& use) {
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  std::getline(file, line);
-  const std::string header = line + "\n";
-  if (header != ResultsHeader() &&
-      header != ResultsHeader(ResultColumns::kWithCandidates)) {
-    return Error{ErrorCode::kInvalid,
-                 path + ":1: this is not the header of a results.csv"};
+Result<CaseResult> ParseResultLine(std::string_view line,
+                                   const std::string& path, int number) {
+  const Result<CsvRow> parsed = ParseCsvRecord(line, path, number);
+  if (!parsed.ok()) return parsed.error();
+  const CsvRow& row = *parsed;
+  if (row.fields.size() != kNumUsual && row.fields.size() != kColumns.size()) {
+    return Error{ErrorCode::kInvalid, path + ":" + std::to_string(number) +
+                                          ": not the columns of the header"};
   }
-  for (int first = 2; file; first += kRowsAtOnce) {
-    std::string chunk = header;
-    for (int i = 0; i < kRowsAtOnce && std::getline(file, line); ++i) {
-      chunk += line + "\n";
-    }
-    const Result<CsvTable> table = ParseCsv(chunk, path);
-    if (!table.ok()) return table.error();
-    for (const CsvRow& row : table->rows) {
-      Result<CaseResult> result = ParseRow(row, path, first + row.line - 2);
-      if (!result.ok()) return result.error();
-      use(*std::move(result));
-    }
+  CaseResult r;
+  RowReader reader(row.fields);
+  reader.Text(r.case_id);
+  reader.Text(r.group);
+  reader.Text(r.sequence);
+  reader.Int(r.map_id);
+  reader.Int(r.repeat);
+  r.kind = static_cast<AttemptKind>(reader.Choice(kKinds));
+  r.code = reader.CodeField();
+  r.form = static_cast<AnswerStyle>(reader.Choice(kForms));
+  reader.Number(r.baseline_cost);
+  reader.Number(r.oracle_cost);
+  reader.Number(r.candidate_cost);
+  reader.Number(r.final_cost);
+  reader.Waypoints(r.candidate_route);
+  reader.Waypoints(r.final_route);
+  reader.Number(r.t_prep);
+  reader.Number(r.t_llm);
+  reader.Number(r.t_det);
+  reader.Int(r.tries);
+  reader.Int(r.tokens_in);
+  reader.Int(r.tokens_out);
+  reader.Number(r.spend);
+  reader.Text(r.request_hash);
+  if (row.fields.size() > kNumUsual) {
+    reader.Int(r.candidates);
+    reader.Int(r.candidates_lower);
+    reader.Int(r.candidates_invalid);
   }
-  return Done{};
+  if (reader.fault() < 0) return r;
+  const auto column = static_cast<std::size_t>(reader.fault());
+  return Error{ErrorCode::kInvalid, path + ":" + std::to_string(number) +
+                                        ": '" + row.fields[column] +
+                                        "' is no " +
+                                        std::string(kColumns[column])};
 }
 
 }  // namespace terra::benchmark

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -72,9 +71,9 @@ std::string ResultsHeader(ResultColumns columns = ResultColumns::kUsual);
 std::string ResultLine(const CaseResult& result,
                        ResultColumns columns = ResultColumns::kUsual);
 
-/// Reads results.csv of either form row by row, in bounded memory.
-/// Errors: name file and line.
-Status ReadResults(const std::string& path,
-                   const std::function<void(CaseResult)>& use);
+/// Reads one line, with or without its end. Errors: name the file and the
+/// number of the line.
+Result<CaseResult> ParseResultLine(std::string_view line,
+                                   const std::string& path, int number);
 
 }  // namespace terra::benchmark

@@ -27,7 +27,7 @@ CaseResult WithoutBaseline(const CaseWork& work, int repeat) {
 
 }  // namespace
 
-Result<CaseWork> BeginCase(const Dataset& dataset, const DatasetCase& c,
+Result<CaseWork> BeginCase(const DatasetFolder& dataset, const DatasetCase& c,
                            const RunOptions& options) {
   const Stopwatch map_watch;
   Result<TerrainMap> map = ReadCaseMap(dataset, c, options.cost_model);

@@ -19,7 +19,7 @@ struct CaseWork {
 };
 
 /// Errors: a map that cannot be read.
-Result<CaseWork> BeginCase(const Dataset& dataset, const DatasetCase& c,
+Result<CaseWork> BeginCase(const DatasetFolder& dataset, const DatasetCase& c,
                            const RunOptions& options);
 
 /// A row of results.csv and what run.json collects beside it.

@@ -3,20 +3,51 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
-#include <optional>
 #include <utility>
 
-#include "benchmark/parallel.h"
+#include "benchmark/in_order.h"
 #include "benchmark/progress.h"
+#include "terrain/files/case_reader.h"
 #include "terrain/files/csv.h"
 #include "terrain/native_search.h"
-#include "terrain/require.h"
 #include "verifier/verify.h"
 
 namespace terra::benchmark {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// What is kept of a case until its rows are written.
+struct MeasuredCase {
+  std::string case_id;
+  std::string group;
+  CaseGap gap;
+};
+
+Result<MeasuredCase> Measure(const DatasetFolder& dataset, const DatasetCase& c,
+                             const GapOptions& options) {
+  const Result<TerrainMap> map = ReadCaseMap(dataset, c, options.cost_model);
+  if (!map.ok()) return map.error();
+  return MeasuredCase{c.case_id, c.group,
+                      MeasureGap(*map, c.start, c.goal, options)};
+}
+
+std::string RowsOf(const MeasuredCase& c, const std::vector<int>& strides) {
+  std::string rows;
+  for (std::size_t k = 0; k < strides.size(); ++k) {
+    rows += CsvLine({c.case_id, std::to_string(strides[k]),
+                     FormatNumber(c.gap.baseline_costs[k]),
+                     FormatNumber(c.gap.oracle_cost)});
+  }
+  return rows;
+}
+
+Error CannotWrite(const std::string& path) {
+  return {ErrorCode::kUnavailable, path + ": cannot be written"};
+}
+
+}  // namespace
 
 CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
                    const GapOptions& options) {
@@ -43,85 +74,69 @@ double OptimalCost(const TerrainMap& map, Cell start, Cell goal,
   return NativeSearch(map, start, goal, search).cost;
 }
 
-Result<std::vector<CaseGap>> MeasureGaps(const Dataset& dataset,
-                                         const GapOptions& options) {
-  const auto count = static_cast<std::int64_t>(dataset.cases.size());
-  std::vector<CaseGap> gaps(dataset.cases.size());
-  std::optional<Error> failure;
-  std::mutex mutex;
-  Progress progress("gap", count);
-  ParallelFor(count, options.jobs, [&](std::int64_t i) {
-    const auto index = static_cast<std::size_t>(i);
-    const DatasetCase& c = dataset.cases[index];
-    const Result<TerrainMap> map = ReadCaseMap(dataset, c, options.cost_model);
-    if (map.ok()) {
-      gaps[index] = MeasureGap(*map, c.start, c.goal, options);
-    } else {
-      const std::scoped_lock lock(mutex);
-      if (!failure) failure = map.error();
-    }
-    progress.Advance();
-  });
-  if (failure) return *failure;
-  return gaps;
+void GapSummaries::Add(const std::string& group, const CaseGap& gap) {
+  for (std::size_t k = 0; k < strides_.size(); ++k) {
+    GapSummary& row = RowOf(group, strides_[k]);
+    const double baseline = gap.baseline_costs[k];
+    ++row.paths;
+    if (baseline == kImpassable || gap.oracle_cost == kImpassable) continue;
+    ++row.comparable;
+    if (!verifier::StrictlyCheaper(gap.oracle_cost, baseline)) continue;
+    ++row.gaps;
+    row.mean_gap += (baseline - gap.oracle_cost) / baseline;
+  }
 }
 
-std::vector<GapSummary> SummarizeGaps(const std::vector<DatasetCase>& cases,
-                                      const std::vector<CaseGap>& gaps,
-                                      const GapOptions& options) {
-  TERRA_REQUIRE(cases.size() == gaps.size());
-  std::vector<GapSummary> summaries;
-  const auto row_of = [&](const std::string& group, int stride) -> GapSummary& {
-    for (GapSummary& summary : summaries) {
-      if (summary.group == group && summary.stride == stride) return summary;
-    }
-    return summaries.emplace_back(GapSummary{group, stride, 0, 0, 0, 0});
-  };
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    for (std::size_t k = 0; k < options.strides.size(); ++k) {
-      GapSummary& row = row_of(cases[i].group, options.strides[k]);
-      const double baseline = gaps[i].baseline_costs[k];
-      const double oracle = gaps[i].oracle_cost;
-      ++row.paths;
-      if (baseline == kImpassable || oracle == kImpassable) continue;
-      ++row.comparable;
-      if (!verifier::StrictlyCheaper(oracle, baseline)) continue;
-      ++row.gaps;
-      row.mean_gap += (baseline - oracle) / baseline;  // A sum, for now.
-    }
-  }
-  for (GapSummary& row : summaries) {
+std::vector<GapSummary> GapSummaries::Rows() const {
+  std::vector<GapSummary> rows = sums_;
+  for (GapSummary& row : rows) {
     if (row.gaps > 0) row.mean_gap /= static_cast<double>(row.gaps);
   }
-  return summaries;
+  return rows;
 }
 
-Status WriteGaps(const std::vector<DatasetCase>& cases,
-                 const std::vector<CaseGap>& gaps, const GapOptions& options,
-                 const std::string& path) {
-  TERRA_REQUIRE(cases.size() == gaps.size());
-  // A part of the text at a time: there may be a million cases.
-  constexpr std::size_t kPartBytes = std::size_t{1} << 16;
+GapSummary& GapSummaries::RowOf(const std::string& group, int stride) {
+  for (GapSummary& row : sums_) {
+    if (row.group == group && row.stride == stride) return row;
+  }
+  return sums_.emplace_back(GapSummary{group, stride, 0, 0, 0, 0});
+}
+
+Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
+                                            const GapOptions& options,
+                                            const std::string& path) {
+  std::int64_t total = 0;
+  const Status checked = CheckCases(dataset.folder, [&](const DatasetCase&) {
+    ++total;
+  });
+  if (!checked.ok()) return checked.error();
+  Result<CaseReader> cases = CaseReader::Open(dataset.folder);
+  if (!cases.ok()) return cases.error();
+  Progress progress("gap", total);
+  GapSummaries summaries(options.strides);
   const std::string unfinished = path + ".part";
   std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  std::string text =
-      CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"});
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    for (std::size_t k = 0; k < options.strides.size(); ++k) {
-      text += CsvLine({cases[i].case_id, std::to_string(options.strides[k]),
-                       FormatNumber(gaps[i].baseline_costs[k]),
-                       FormatNumber(gaps[i].oracle_cost)});
-    }
-    if (text.size() < kPartBytes) continue;
-    file << text;
-    text.clear();
-  }
-  file << text;
+  file << CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"});
+  InOrder<DatasetCase, MeasuredCase> work(
+      [&] {
+        return cases->Next();
+      },
+      [&](const DatasetCase& c) {
+        return Measure(dataset, c, options);
+      },
+      [&](const MeasuredCase& c) -> Status {
+        progress.Advance();
+        summaries.Add(c.group, c.gap);
+        file << RowsOf(c, options.strides);
+        return file ? Status(Done{}) : CannotWrite(path);
+      });
+  const Status measured = work.Run(options.jobs);
+  if (!measured.ok()) return measured.error();
   file.close();
   std::error_code failed;
   if (file) fs::rename(unfinished, path, failed);
-  if (file && !failed) return Done{};
-  return Error{ErrorCode::kUnavailable, path + ": cannot be written"};
+  if (!file || failed) return CannotWrite(path);
+  return summaries.Rows();
 }
 
 }  // namespace terra::benchmark

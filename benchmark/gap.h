@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planner/coarse_lattice.h"
@@ -33,11 +34,6 @@ CaseGap MeasureGap(const TerrainMap& map, Cell start, Cell goal,
 double OptimalCost(const TerrainMap& map, Cell start, Cell goal,
                    double known_cost);
 
-/// Measures every case of a dataset, in its order. Errors: a map that cannot be
-/// read.
-Result<std::vector<CaseGap>> MeasureGaps(const Dataset& dataset,
-                                         const GapOptions& options);
-
 /// A row of the paper's oracle-gap table, without MOGR.
 struct GapSummary {
   std::string group;
@@ -47,13 +43,29 @@ struct GapSummary {
   std::int64_t gaps = 0;        ///< Baseline > oracle + epsilon.
   double mean_gap = 0;          ///< Of the gaps, relative to the baseline.
 };
-std::vector<GapSummary> SummarizeGaps(const std::vector<DatasetCase>& cases,
-                                      const std::vector<CaseGap>& gaps,
-                                      const GapOptions& options);
 
-/// Writes case_id, stride, baseline_cost, oracle_cost.
-Status WriteGaps(const std::vector<DatasetCase>& cases,
-                 const std::vector<CaseGap>& gaps, const GapOptions& options,
-                 const std::string& path);
+/// Sums up cases one by one.
+class GapSummaries {
+ public:
+  explicit GapSummaries(std::vector<int> strides)
+      : strides_(std::move(strides)) {}
+
+  void Add(const std::string& group, const CaseGap& gap);
+  /// A row for each group and stride, in order of appearance.
+  std::vector<GapSummary> Rows() const;
+
+ private:
+  GapSummary& RowOf(const std::string& group, int stride);
+
+  std::vector<int> strides_;
+  std::vector<GapSummary> sums_;  ///< mean_gap is a sum here.
+};
+
+/// Measures every case of a dataset and writes case_id, stride, baseline_cost,
+/// oracle_cost, in its order. Memory does not grow with the cases.
+/// Errors: those of CheckCases; a map that cannot be read; not writable.
+Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
+                                            const GapOptions& options,
+                                            const std::string& path);
 
 }  // namespace terra::benchmark

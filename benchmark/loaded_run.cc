@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "benchmark/integer_random.h"
+#include "benchmark/results_reader.h"
 
 namespace terra::benchmark {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "benchmark/case_result.h"
+#include "benchmark/results_reader.h"
 #include "benchmark/run_description.h"
 
 namespace terra::benchmark {
@@ -49,9 +50,7 @@ std::string ShardName(const Shard& shard) {
 
 // Rows that a shard has when it is finished.
 std::int64_t NumRowsDue(const RunDescription& d) {
-  const std::int64_t cases =
-      (d.num_cases + d.shard.count - d.shard.index) / d.shard.count;
-  return cases * d.repeats;
+  return d.shard.NumOf(d.num_cases) * d.repeats;
 }
 
 // What a shard lacks, as text; empty when it is finished.

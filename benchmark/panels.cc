@@ -5,15 +5,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "benchmark/results_reader.h"
 #include "benchmark/rugd.h"
 #include "benchmark/run_description.h"
 #include "planner/coarse_lattice.h"
+#include "terrain/files/case_reader.h"
 #include "terrain/files/image.h"
 #include "terrain/files/picture.h"
 #include "terrain/files/whole_file.h"
@@ -70,25 +74,72 @@ void DrawEnd(cv::Mat& image, Cell cell, const char* letter) {
               cv::LINE_AA);
 }
 
-// A case that may be shown, and what was gained.
+// A row that may be shown, and what was gained.
 struct Candidate {
   double gain = 0;
-  std::string case_id;
+  std::int64_t row = 0;
 };
 
 // At even distances from the largest gain to the smallest.
 std::vector<Candidate> Spread(std::vector<Candidate> all, int wanted) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.gain > b.gain;
-                   });
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    return a.gain != b.gain ? a.gain > b.gain : a.row < b.row;
+  });
   std::vector<Candidate> chosen;
   const std::size_t count =
       std::min(all.size(), static_cast<std::size_t>(wanted));
   for (std::size_t i = 0; i < count; ++i) {
-    chosen.push_back(std::move(all[i * all.size() / count]));
+    chosen.push_back(all[i * all.size() / count]);
   }
   return chosen;
+}
+
+// The rows to show, by case. Twice through the file, so that only their routes
+// are kept.
+Result<std::map<std::string, CaseResult>> ChooseRows(const std::string& path,
+                                                     int per_group) {
+  std::map<std::string, std::vector<Candidate>> groups;
+  std::int64_t row = 0;
+  const Status ranked = ReadResults(path, [&](const CaseResult& r) {
+    const std::int64_t number = row++;
+    if (r.code != verifier::Code::kAccepted || r.repeat != 0) return;
+    const double gain = (r.baseline_cost - r.final_cost) / r.baseline_cost;
+    groups[r.group].push_back({gain, number});
+  });
+  if (!ranked.ok()) return ranked.error();
+  std::set<std::int64_t> wanted;
+  for (auto& [group, all] : groups) {
+    for (const Candidate& candidate : Spread(std::move(all), per_group)) {
+      wanted.insert(candidate.row);
+    }
+  }
+  std::map<std::string, CaseResult> chosen;
+  row = 0;
+  const Status read = ReadResults(path, [&](CaseResult r) {
+    if (wanted.contains(row++)) chosen.emplace(r.case_id, std::move(r));
+  });
+  if (!read.ok()) return read.error();
+  return chosen;
+}
+
+// The cases of these rows. Errors: the dataset lacks one.
+Result<std::map<std::string, DatasetCase>> FindCases(
+    const std::string& folder, const std::map<std::string, CaseResult>& rows) {
+  std::map<std::string, DatasetCase> cases;
+  Result<CaseReader> reader = CaseReader::Open(folder);
+  if (!reader.ok()) return reader.error();
+  while (cases.size() < rows.size()) {
+    Result<std::optional<DatasetCase>> next = reader->Next();
+    if (!next.ok()) return next.error();
+    if (!next->has_value()) break;
+    const std::string id = (*next)->case_id;
+    if (rows.contains(id)) cases.emplace(id, **std::move(next));
+  }
+  for (const auto& [id, row] : rows) {
+    if (cases.contains(id)) continue;
+    return Error{ErrorCode::kInvalid, folder + ": has no case " + id};
+  }
+  return cases;
 }
 
 std::string Caption(const CaseResult& r) {
@@ -160,17 +211,13 @@ Route BaselineOf(const RunDescription& run, const TerrainMap& map,
   return planner::PlanOnLattice(map, c.start, c.goal, lattice).waypoints;
 }
 
-Result<Panel> MakePanel(const RunDescription& run, const Dataset& dataset,
-                        const FramePaths& frames, const CaseResult& result) {
-  const DatasetCase* c = dataset.Find(result.case_id);
-  if (c == nullptr) {
-    return Error{ErrorCode::kInvalid,
-                 dataset.folder + ": has no case " + result.case_id};
-  }
+Result<Panel> MakePanel(const RunDescription& run, const DatasetFolder& dataset,
+                        const DatasetCase& c, const FramePaths& frames,
+                        const CaseResult& result) {
   const CostModel model{run.corner_cutting, run.clearance_cells};
-  const Result<TerrainMap> map = ReadCaseMap(dataset, *c, model);
+  const Result<TerrainMap> map = ReadCaseMap(dataset, c, model);
   if (!map.ok()) return map.error();
-  const Route baseline = BaselineOf(run, *map, *c);
+  const Route baseline = BaselineOf(run, *map, c);
   cv::Mat image = DrawPanel(*map, baseline, result.final_route, run.stride);
   const auto path = frames.find(result.case_id);
   if (path != frames.end()) {
@@ -190,36 +237,23 @@ std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
 }
 
 Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
-                                      const Dataset& dataset, int per_group,
+                                      const DatasetFolder& dataset,
+                                      int per_group,
                                       const std::string& frames) {
   const Result<FramePaths> paths = FindFrames(frames);
   if (!paths.ok()) return paths.error();
   const Result<RunDescription> run =
       ReadRunDescription((fs::path(run_folder) / "run.json").string());
   if (!run.ok()) return run.error();
-  const std::string path = (fs::path(run_folder) / "results.csv").string();
-  // Twice through the file, so that only the chosen routes are kept.
-  std::map<std::string, std::vector<Candidate>> groups;
-  const Status ranked = ReadResults(path, [&](const CaseResult& r) {
-    if (r.code != verifier::Code::kAccepted || r.repeat != 0) return;
-    const double gain = (r.baseline_cost - r.final_cost) / r.baseline_cost;
-    groups[r.group].push_back({gain, r.case_id});
-  });
-  if (!ranked.ok()) return ranked.error();
-  std::map<std::string, CaseResult> chosen;
-  for (auto& [group, all] : groups) {
-    for (const Candidate& candidate : Spread(std::move(all), per_group)) {
-      chosen.emplace(candidate.case_id, CaseResult{});
-    }
-  }
-  const Status read = ReadResults(path, [&](const CaseResult& r) {
-    const auto found = chosen.find(r.case_id);
-    if (found != chosen.end() && r.repeat == 0) found->second = r;
-  });
-  if (!read.ok()) return read.error();
+  const auto rows =
+      ChooseRows((fs::path(run_folder) / "results.csv").string(), per_group);
+  if (!rows.ok()) return rows.error();
+  const auto cases = FindCases(dataset.folder, *rows);
+  if (!cases.ok()) return cases.error();
   std::vector<Panel> panels;
-  for (const auto& [id, result] : chosen) {
-    Result<Panel> panel = MakePanel(*run, dataset, *paths, result);
+  for (const auto& [id, result] : *rows) {
+    Result<Panel> panel =
+        MakePanel(*run, dataset, cases->at(id), *paths, result);
     if (!panel.ok()) return panel.error();
     panels.push_back(*std::move(panel));
   }

@@ -27,9 +27,10 @@ std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
 /// distances in the order of what was gained, the largest gain first. With a
 /// folder of camera frames (RUGD; empty = none) the frame of a case's name,
 /// with the same routes, stands above its map.
+/// In memory are 16 bytes per accepted case.
 /// Errors: the run, a map or a frame cannot be read; a frame of another size.
 Result<std::vector<Panel>> MakePanels(const std::string& run_folder,
-                                      const Dataset& dataset, int per_group,
-                                      const std::string& frames);
+                                      const DatasetFolder& dataset,
+                                      int per_group, const std::string& frames);
 
 }  // namespace terra::benchmark

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "advisor/encoding.h"
+#include "benchmark/case_list.h"
 #include "benchmark/detail_tables.h"
 #include "benchmark/panels.h"
 #include "benchmark/paper_tables.h"
@@ -12,7 +13,6 @@
 #include "benchmark/report_page.h"
 #include "benchmark/report_selection.h"
 #include "benchmark/rugd.h"
-#include "benchmark/run.h"
 #include "benchmark/run_labels.h"
 #include "benchmark/switch_tables.h"
 #include "terrain/files/whole_file.h"
@@ -151,7 +151,7 @@ class ReportWriter {
                   "route. Cases at even distances in the order of what was "
                   "gained.");
     for (const std::string& folder : options_.datasets) {
-      const Result<Dataset> dataset = ReadDataset(folder);
+      const Result<DatasetFolder> dataset = OpenDataset(folder);
       if (!dataset.ok()) return dataset.error();
       const Result<std::string> digest = DatasetDigest(*dataset);
       if (!digest.ok()) return digest.error();
@@ -166,7 +166,8 @@ class ReportWriter {
   }
 
   // Only frames of RUGD are meant.
-  std::string FramesOf(const Dataset& dataset, const LoadedRun& run) const {
+  std::string FramesOf(const DatasetFolder& dataset,
+                       const LoadedRun& run) const {
     if (!IsRugd(run)) return "";
     return options_.frames.empty() ? RugdFramesOf(dataset) : options_.frames;
   }

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <utility>
 
 #include <sys/file.h>
@@ -41,56 +40,14 @@ Status CutTornLine(const std::string& path) {
   return Done{};
 }
 
-// Where the rows of a file stand, one per line after the header.
-std::vector<ResultsFile::Place> RowPlaces(const std::string& path) {
-  std::vector<ResultsFile::Place> places;
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  std::getline(file, line);
-  std::int64_t offset = static_cast<std::int64_t>(line.size()) + 1;
-  while (std::getline(file, line)) {
-    const auto length = static_cast<std::int64_t>(line.size()) + 1;
-    places.push_back({offset, length});
-    offset += length;
-  }
-  return places;
-}
-
-// Copies rows into a new file, in this order, and puts it in place of the old.
-Status RewriteRows(const std::string& path,
-                   const std::vector<ResultsFile::Place>& places,
-                   ResultColumns columns) {
-  const std::string temporary = path + ".part";
-  {
-    std::ifstream from(path, std::ios::binary);
-    std::ofstream to(temporary, std::ios::binary | std::ios::trunc);
-    to << ResultsHeader(columns);
-    std::string row;
-    for (const ResultsFile::Place& place : places) {
-      if (place.length == 0) continue;
-      row.resize(static_cast<std::size_t>(place.length));
-      from.seekg(place.offset);
-      from.read(row.data(), place.length);
-      if (!from) return SystemError(path, "cannot be read");
-      to << row;
-    }
-    if (!to.flush()) return SystemError(temporary, "cannot be written");
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    return SystemError(path, "cannot be replaced");
-  }
-  return Done{};
-}
-
 }  // namespace
 
-ResultsFile::ResultsFile(std::string path, const IdIndex& cases, int repeats,
+ResultsFile::ResultsFile(std::string path, CaseIds cases, int repeats,
                          ResultColumns columns)
     : path_(std::move(path)),
-      cases_(cases),
+      cases_(std::move(cases)),
       repeats_(repeats),
-      columns_(columns),
-      done_(cases.size() * static_cast<std::size_t>(repeats)) {}
+      columns_(columns) {}
 
 ResultsFile::~ResultsFile() {
   if (file_ >= 0) ::close(file_);
@@ -98,15 +55,16 @@ ResultsFile::~ResultsFile() {
 }
 
 Result<std::unique_ptr<ResultsFile>> ResultsFile::Open(const std::string& path,
-                                                       const IdIndex& cases,
+                                                       CaseIds cases,
                                                        int repeats,
                                                        ResultColumns columns) {
   std::unique_ptr<ResultsFile> file(
-      new ResultsFile(path, cases, repeats, columns));
+      new ResultsFile(path, std::move(cases), repeats, columns));
   const Status locked = file->Lock();
   if (!locked.ok()) return locked.error();
   const Status recovered = file->Recover();
   if (!recovered.ok()) return recovered.error();
+  file->next_slot_ = file->done_.size();
   file->file_ =
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (file->file_ < 0) return SystemError(path, "cannot be opened");
@@ -122,35 +80,24 @@ Status ResultsFile::Lock() {
                path_ + ": another process is writing these results"};
 }
 
-Result<std::size_t> ResultsFile::SlotOf(const CaseResult& result) const {
-  const std::optional<std::size_t> found = cases_.Find(result.case_id);
-  if (!found || result.repeat < 0 || result.repeat >= repeats_) {
-    return Error{ErrorCode::kInvalid,
-                 path_ + ": case '" + result.case_id + "' repeat " +
-                     std::to_string(result.repeat) + " is not of this run"};
+Status ResultsFile::Rewrite(
+    const SortedParts& parts,
+    const std::function<bool(const OrderedRow&)>& wanted) {
+  const std::string temporary = path_ + ".part";
+  {
+    std::ofstream to(temporary, std::ios::binary | std::ios::trunc);
+    to << ResultsHeader(columns_);
+    const Status merged = MergeSortedParts(path_, parts, cases_, repeats_,
+                                           [&](const OrderedRow& row) {
+                                             if (wanted(row)) to << row.line;
+                                           });
+    if (!merged.ok()) return merged;
+    if (!to.flush()) return SystemError(temporary, "cannot be written");
   }
-  return *found * static_cast<std::size_t>(repeats_) +
-         static_cast<std::size_t>(result.repeat);
-}
-
-Result<std::vector<ResultsFile::Place>> ResultsFile::Scan(
-    bool keep_unanswered) {
-  const std::vector<Place> rows = RowPlaces(path_);
-  std::vector<Place> by_slot(done_.size());
-  std::optional<Error> failure;
-  std::size_t row = 0;
-  const Status read = ReadResults(path_, [&](const CaseResult& result) {
-    const Result<std::size_t> slot = SlotOf(result);
-    const Place place = rows.at(row++);
-    if (!slot.ok()) {
-      failure = slot.error();
-    } else if (keep_unanswered || result.kind != AttemptKind::kNoAnswer) {
-      by_slot[*slot] = place;
-    }
-  });
-  if (!read.ok()) return read.error();
-  if (failure) return *failure;
-  return by_slot;
+  if (std::rename(temporary.c_str(), path_.c_str()) != 0) {
+    return SystemError(path_, "cannot be replaced");
+  }
+  return Done{};
 }
 
 Status ResultsFile::Recover() {
@@ -158,22 +105,27 @@ Status ResultsFile::Recover() {
     const Status cut = CutTornLine(path_);
     if (!cut.ok()) return cut.error();
   }
-  if (!fs::exists(path_) || fs::file_size(path_) == 0) {
-    return RewriteRows(path_, {}, columns_);
+  SortedParts parts;
+  if (fs::exists(path_) && fs::file_size(path_) > 0) {
+    Result<SortedParts> found = FindSortedParts(path_, cases_, repeats_);
+    if (!found.ok()) return found.error();
+    parts = *std::move(found);
   }
-  const Result<std::vector<Place>> by_slot = Scan(false);
-  if (!by_slot.ok()) return by_slot.error();
-  for (std::size_t slot = 0; slot < by_slot->size(); ++slot) {
-    if ((*by_slot)[slot].length == 0) continue;
-    done_[slot] = true;
+  return Rewrite(parts, [&](const OrderedRow& row) {
+    if (row.result.kind == AttemptKind::kNoAnswer) return false;
+    done_.resize(static_cast<std::size_t>(row.slot));
+    done_.push_back(true);
     ++num_done_;
-  }
-  return RewriteRows(path_, *by_slot, columns_);
+    return true;
+  });
 }
 
-Status ResultsFile::Append(const CaseResult& result) {
+Status ResultsFile::Append(std::size_t case_index, const CaseResult& result) {
   const std::string line = ResultLine(result, columns_);
+  const std::size_t slot = SlotOf(case_index, result.repeat);
   const std::scoped_lock lock(mutex_);
+  ordered_ = ordered_ && slot >= next_slot_;
+  next_slot_ = slot + 1;
   if (::write(file_, line.data(), line.size()) ==
       static_cast<ssize_t>(line.size())) {
     return Done{};
@@ -182,14 +134,22 @@ Status ResultsFile::Append(const CaseResult& result) {
 }
 
 Status ResultsFile::Finish() {
-  const Result<std::vector<Place>> by_slot = Scan(true);
-  if (!by_slot.ok()) return by_slot.error();
-  return RewriteRows(path_, *by_slot, columns_);
+  if (ordered_) return Done{};
+  const Result<SortedParts> parts = FindSortedParts(path_, cases_, repeats_);
+  if (!parts.ok()) return parts.error();
+  return Rewrite(*parts, [](const OrderedRow&) {
+    return true;
+  });
 }
 
 bool ResultsFile::IsDone(std::size_t case_index, int repeat) const {
-  return done_[case_index * static_cast<std::size_t>(repeats_) +
-               static_cast<std::size_t>(repeat)];
+  const std::size_t slot = SlotOf(case_index, repeat);
+  return slot < done_.size() && done_[slot];
+}
+
+std::size_t ResultsFile::SlotOf(std::size_t case_index, int repeat) const {
+  return case_index * static_cast<std::size_t>(repeats_) +
+         static_cast<std::size_t>(repeat);
 }
 
 }  // namespace terra::benchmark

@@ -203,7 +203,7 @@ Status PrepareFolder(const fs::path& out) {
 
 }  // namespace
 
-std::string RugdFramesOf(const Dataset& dataset) {
+std::string RugdFramesOf(const DatasetFolder& dataset) {
   const auto json = nlohmann::json::parse(dataset.json, nullptr, false);
   const auto found = json.is_object() ? json.find("frames") : json.end();
   return found != json.end() && found->is_string() ? found->get<std::string>()

@@ -39,7 +39,7 @@ struct RugdFrame {
 };
 
 /// Where a converted dataset says that its camera frames are; empty = nowhere.
-std::string RugdFramesOf(const Dataset& dataset);
+std::string RugdFramesOf(const DatasetFolder& dataset);
 
 /// Returns the masks below a folder in order of their names; none for other
 /// files. A name that stands twice is an error.

@@ -2,28 +2,22 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "advisor/encoding.h"
 #include "benchmark/case_work.h"
-#include "benchmark/parallel.h"
+#include "benchmark/in_order.h"
 #include "benchmark/progress.h"
 #include "benchmark/results_file.h"
 #include "benchmark/run_description.h"
-#include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMaxTableBytes = std::size_t{1} << 30;
 
 // A method's open results.
 struct OpenRun {
@@ -37,138 +31,166 @@ std::string DescriptionPath(const MethodRun& run) {
   return (fs::path(run.folder) / "run.json").string();
 }
 
-// A new run.json, or the one that is there with one more start.
-Result<RunDescription> BeginDescription(const MethodRun& run,
-                                        RunDescription description) {
+// What run.json is to say: of a new run, or of the one that is there with one
+// more start.
+Result<RunDescription> Continued(const MethodRun& run,
+                                 RunDescription description) {
   const std::string path = DescriptionPath(run);
-  if (fs::exists(path)) {
-    const Result<RunDescription> before = ReadRunDescription(path);
-    if (!before.ok()) return before.error();
-    if (!before->SameFigures(description) ||
-        before->shard.index != description.shard.index ||
-        before->shard.count != description.shard.count) {
-      return Error{ErrorCode::kInvalid,
-                   run.folder +
-                       " holds another run (see its run.json); "
-                       "choose another folder or remove it"};
-    }
-    description.started = before->started;
-    description.started.push_back(UtcNow());
-    description.models = before->models;
-    description.recorded = before->recorded;
-    // A part that ran with several jobs did not take one case at a time.
-    description.jobs = std::max(description.jobs, before->jobs);
+  if (!fs::exists(path)) return description;
+  const Result<RunDescription> before = ReadRunDescription(path);
+  if (!before.ok()) return before.error();
+  if (!before->SameFigures(description) ||
+      before->shard.index != description.shard.index ||
+      before->shard.count != description.shard.count) {
+    return Error{ErrorCode::kInvalid,
+                 run.folder +
+                     " holds another run (see its run.json); "
+                     "choose another folder or remove it"};
   }
-  const Status written = WriteRunDescription(description, path);
-  if (!written.ok()) return written.error();
+  description.started = before->started;
+  description.started.push_back(UtcNow());
+  description.models = before->models;
+  description.recorded = before->recorded;
+  // A part that ran with several jobs did not take one case at a time.
+  description.jobs = std::max(description.jobs, before->jobs);
   return description;
 }
 
-Result<OpenRun> Open(const MethodRun& run, const IdIndex& cases, int repeats,
-                     RunDescription description) {
+Result<OpenRun> Open(const MethodRun& run, const CaseList& cases, int repeats,
+                     const RunDescription& description) {
   std::error_code failed;
   fs::create_directories(run.folder, failed);
   if (failed) {
     return Error{ErrorCode::kUnavailable, run.folder + ": " + failed.message()};
   }
+  // Before the results of another run are touched; and again below, when
+  // nobody else can write them any more.
+  const Result<RunDescription> fits = Continued(run, description);
+  if (!fits.ok()) return fits.error();
   OpenRun open;
   open.run = &run;
   auto results = ResultsFile::Open(
-      (fs::path(run.folder) / "results.csv").string(), cases, repeats,
+      (fs::path(run.folder) / "results.csv").string(), IdsOf(cases), repeats,
       run.choice.info.several_candidates ? ResultColumns::kWithCandidates
                                          : ResultColumns::kUsual);
   if (!results.ok()) return results.error();
   open.results = *std::move(results);
-  Result<RunDescription> begun = BeginDescription(run, std::move(description));
+  Result<RunDescription> begun = Continued(run, description);
   if (!begun.ok()) return begun.error();
   open.description = *std::move(begun);
+  const Status written =
+      WriteRunDescription(open.description, DescriptionPath(run));
+  if (!written.ok()) return written.error();
   open.models.insert(open.description.models.begin(),
                      open.description.models.end());
   return open;
 }
 
+// A case and its place in the list.
+struct NumberedCase {
+  std::size_t index = 0;
+  DatasetCase dataset_case;
+};
+
+// What came of a case that was left, of each method and repeat.
+struct TriedMethods {
+  struct One {
+    OpenRun* run = nullptr;
+    TriedCase tried;
+  };
+  std::size_t index = 0;
+  std::vector<One> all;
+};
+
 // Runs what is left of the cases, several at a time.
 class Runner {
  public:
-  /// `cases`: those of the run, each with its place in the dataset.
-  Runner(const Dataset& dataset, const std::vector<std::uint32_t>& cases,
+  Runner(const DatasetFolder& dataset, CaseCursor cases,
          const RunOptions& options, std::vector<OpenRun>& runs)
-      : dataset_(dataset), cases_(cases), options_(options), runs_(runs) {}
+      : dataset_(dataset),
+        cases_(std::move(cases)),
+        options_(options),
+        runs_(runs) {}
 
-  Status Run() {
-    const std::vector<std::size_t> left = CasesLeft();
-    const auto total = static_cast<std::int64_t>(NumOfShard());
-    const auto count = static_cast<std::int64_t>(left.size());
-    Progress progress("run", total, total - count);
-    ParallelFor(count, options_.jobs, [&](std::int64_t i) {
-      if (!failed()) RunCase(left[static_cast<std::size_t>(i)]);
-      progress.Advance();
-    });
-    if (failure_) return *failure_;
-    return Done{};
+  /// `total`: the number of cases.
+  Status Run(std::int64_t total) {
+    Progress progress("run", total, NumDone(total));
+    InOrder<NumberedCase, TriedMethods> work(
+        [this] {
+          return NextLeft();
+        },
+        [this](const NumberedCase& c) {
+          return Try(c);
+        },
+        [&](const TriedMethods& tried) {
+          progress.Advance();
+          return Keep(tried);
+        });
+    return work.Run(options_.jobs);
   }
 
  private:
   // Methods belong to the thread that made them.
   using Methods = std::vector<std::unique_ptr<Method>>;
 
-  bool InShard(std::size_t index) const {
-    const auto count = static_cast<std::size_t>(options_.shard.count);
-    return index % count + 1 == static_cast<std::size_t>(options_.shard.index);
-  }
-
-  std::size_t NumOfShard() const {
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < cases_.size(); ++i) n += InShard(i);
-    return n;
-  }
-
-  bool IsDone(const OpenRun& run, std::size_t index) const {
-    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-      if (!run.results->IsDone(index, repeat)) return false;
+  bool IsDone(std::size_t index) const {
+    for (const OpenRun& run : runs_) {
+      for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+        if (!run.results->IsDone(index, repeat)) return false;
+      }
     }
     return true;
   }
 
-  std::vector<std::size_t> CasesLeft() const {
-    std::vector<std::size_t> left;
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-      const bool done =
-          std::all_of(runs_.begin(), runs_.end(), [&](const OpenRun& run) {
-            return IsDone(run, i);
-          });
-      if (InShard(i) && !done) left.push_back(i);
+  std::int64_t NumDone(std::int64_t total) const {
+    std::int64_t n = 0;
+    for (std::int64_t i = 0; i < total; ++i) {
+      n += IsDone(static_cast<std::size_t>(i)) ? 1 : 0;
     }
-    return left;
+    return n;
   }
 
-  void RunCase(std::size_t index) {
-    const DatasetCase& c = dataset_.cases[cases_[index]];
-    const Result<CaseWork> work = BeginCase(dataset_, c, options_);
-    if (!work.ok()) return Fail(work.error());
+  Result<std::optional<NumberedCase>> NextLeft() {
+    for (;; ++next_index_) {
+      Result<std::optional<DatasetCase>> next = cases_.Next();
+      if (!next.ok()) return next.error();
+      if (!next->has_value()) return std::optional<NumberedCase>();
+      if (IsDone(next_index_)) continue;
+      return std::optional(NumberedCase{next_index_++, **std::move(next)});
+    }
+  }
+
+  Result<TriedMethods> Try(const NumberedCase& c) {
+    const Result<CaseWork> work = BeginCase(dataset_, c.dataset_case, options_);
+    if (!work.ok()) return work.error();
     Result<Methods> methods = TakeMethods();
-    if (!methods.ok()) return Fail(methods.error());
+    if (!methods.ok()) return methods.error();
+    TriedMethods result{c.index, {}};
     for (std::size_t m = 0; m < runs_.size(); ++m) {
       for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-        if (runs_[m].results->IsDone(index, repeat)) continue;
-        Keep(runs_[m],
-             TryCase(*work, runs_[m].run->choice.info, *(*methods)[m], repeat));
+        if (runs_[m].results->IsDone(c.index, repeat)) continue;
+        result.all.push_back(
+            {&runs_[m], TryCase(*work, runs_[m].run->choice.info,
+                                *(*methods)[m], repeat)});
       }
     }
     const std::scoped_lock lock(mutex_);
     idle_.push_back(*std::move(methods));
+    return result;
   }
 
-  void Keep(OpenRun& run, const TriedCase& tried) {
-    const Status written = run.results->Append(tried.result);
-    if (!written.ok()) return Fail(written.error());
-    const Status described = Describe(run, tried);
-    if (!described.ok()) Fail(described.error());
+  static Status Keep(const TriedMethods& tried) {
+    for (const auto& [run, one] : tried.all) {
+      const Status written = run->results->Append(tried.index, one.result);
+      if (!written.ok()) return written;
+      const Status described = Describe(*run, one);
+      if (!described.ok()) return described;
+    }
+    return Done{};
   }
 
   // Into run.json at once, so that a run that is killed keeps it.
-  Status Describe(OpenRun& run, const TriedCase& tried) {
-    const std::scoped_lock lock(mutex_);
+  static Status Describe(OpenRun& run, const TriedCase& tried) {
     RunDescription& d = run.description;
     const std::string days = d.recorded.Days();
     d.recorded.Add(tried.recorded_at);
@@ -197,55 +219,14 @@ class Runner {
     return methods;
   }
 
-  bool failed() {
-    const std::scoped_lock lock(mutex_);
-    return failure_.has_value();
-  }
-
-  void Fail(const Error& error) {
-    const std::scoped_lock lock(mutex_);
-    if (!failure_) failure_ = error;
-  }
-
-  const Dataset& dataset_;
-  const std::vector<std::uint32_t>& cases_;
+  const DatasetFolder& dataset_;
+  CaseCursor cases_;
   const RunOptions& options_;
   std::vector<OpenRun>& runs_;
+  std::size_t next_index_ = 0;
   std::mutex mutex_;
   std::vector<Methods> idle_;
-  std::optional<Error> failure_;
 };
-
-// The places of these cases in the dataset; of none, of all.
-Result<std::vector<std::uint32_t>> PlacesOf(
-    const Dataset& dataset, const std::vector<std::string>& ids) {
-  std::vector<std::uint32_t> places(ids.size());
-  if (ids.empty()) {
-    places.resize(dataset.cases.size());
-    std::iota(places.begin(), places.end(), 0U);
-    return places;
-  }
-  const IdIndex index = IndexOf(dataset.cases);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::optional<std::size_t> place = index.Find(ids[i]);
-    if (!place) {
-      return Error{ErrorCode::kInvalid,
-                   dataset.folder + ": has no case '" + ids[i] + "'"};
-    }
-    places[i] = static_cast<std::uint32_t>(*place);
-  }
-  return places;
-}
-
-IdIndex CasesAt(const Dataset& dataset,
-                const std::vector<std::uint32_t>& places) {
-  std::vector<const std::string*> ids;
-  ids.reserve(places.size());
-  for (const std::uint32_t place : places) {
-    ids.push_back(&dataset.cases[place].case_id);
-  }
-  return IdIndex(std::move(ids));
-}
 
 Status Finish(OpenRun& open) {
   const Status sorted = open.results->Finish();
@@ -256,39 +237,23 @@ Status Finish(OpenRun& open) {
 
 }  // namespace
 
-std::vector<std::string> FirstOfEachGroup(const Dataset& dataset, int n) {
-  std::map<std::string, int> taken;
-  std::vector<std::string> ids;
-  for (const DatasetCase& c : dataset.cases) {
-    if (taken[c.group]++ < n) ids.push_back(c.case_id);
-  }
-  return ids;
-}
-
-Result<std::string> DatasetDigest(const Dataset& dataset) {
-  if (!dataset.digest.empty()) return dataset.digest;
-  const Result<std::string> cases = ReadWholeFile(
-      (fs::path(dataset.folder) / "cases.csv").string(), kMaxTableBytes);
-  if (!cases.ok()) return cases.error();
-  return "cases.csv:" + advisor::Sha256Hex(*cases);
-}
-
-Status RunMethods(const Dataset& dataset, const RunOptions& options,
+Status RunMethods(const DatasetFolder& dataset, const RunOptions& options,
                   const std::vector<MethodRun>& runs, const RunOrigin& origin) {
-  const auto places = PlacesOf(dataset, options.cases);
-  if (!places.ok()) return places.error();
-  const IdIndex cases = CasesAt(dataset, *places);
-  const Result<std::string> digest = DatasetDigest(dataset);
-  if (!digest.ok()) return digest.error();
+  const CaseList cases{dataset.folder, options.cases, options.shard};
+  const Result<CaseSurvey> survey = SurveyCases(dataset, options.cases);
+  if (!survey.ok()) return survey.error();
   std::vector<OpenRun> open;
   for (const MethodRun& run : runs) {
     Result<OpenRun> opened =
         Open(run, cases, options.repeats,
-             DescribeRun(dataset, cases, options, run, origin, *digest));
+             DescribeRun(dataset, *survey, options, run, origin));
     if (!opened.ok()) return opened.error();
     open.push_back(*std::move(opened));
   }
-  const Status ran = Runner(dataset, *places, options, open).Run();
+  Result<CaseCursor> cursor = CaseCursor::Open(cases);
+  if (!cursor.ok()) return cursor.error();
+  const Status ran = Runner(dataset, *std::move(cursor), options, open)
+                         .Run(options.shard.NumOf(survey->num_selected));
   if (!ran.ok()) return ran.error();
   for (OpenRun& run : open) {
     const Status finished = Finish(run);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "benchmark/case_list.h"
 #include "benchmark/method.h"
 #include "planner/coarse_lattice.h"
 #include "terrain/files/dataset.h"
@@ -14,18 +15,11 @@
 
 namespace terra::benchmark {
 
-/// Which of N equal parts of the cases: every N-th from the index-th on.
-struct Shard {
-  int index = 1;  ///< From 1.
-  int count = 1;
-};
-
 /// What all methods of a run share.
 struct RunOptions {
   planner::LatticeOptions lattice;
   CostModel cost_model;
-  /// Case ids, in order of the dataset; empty = all.
-  std::vector<std::string> cases;
+  CaseSelection cases;
   int repeats = 1;
   Shard shard;
   int jobs = 0;  ///< 0 = all cores.
@@ -51,18 +45,14 @@ struct RunOrigin {
 ///
 /// A run that was killed at any moment goes on where it stopped: a row is
 /// written whole or not at all, finished cases are not run again, those without
-/// an answer are. At the end the rows are put into order of the cases.
-/// Map, baseline and oracle of a case are made once for all methods.
+/// an answer are. Rows are written in order of the cases; a case that was done
+/// before its turn came is among those that a kill makes run again.
+/// Map, baseline and oracle of a case are made once for all methods. Memory
+/// does not grow with the cases, but for one bit of each.
 ///
 /// Errors: a folder that holds another run or is being written by another
 /// process; a map that cannot be read; a method that cannot be made.
-Status RunMethods(const Dataset& dataset, const RunOptions& options,
+Status RunMethods(const DatasetFolder& dataset, const RunOptions& options,
                   const std::vector<MethodRun>& runs, const RunOrigin& origin);
-
-/// Returns the ids of the first n cases of each group.
-std::vector<std::string> FirstOfEachGroup(const Dataset& dataset, int n);
-
-/// What identifies a dataset: its own digest, else one of its tables.
-Result<std::string> DatasetDigest(const Dataset& dataset);
 
 }  // namespace terra::benchmark

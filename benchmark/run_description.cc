@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <sys/utsname.h>
 
-#include "advisor/encoding.h"
 #include "advisor/wire_json.h"
 #include "benchmark/parallel.h"
 #include "terrain/files/whole_file.h"
@@ -38,12 +37,6 @@ std::string MachineText() {
   return ProcessorName() + ", " +
          std::to_string(std::thread::hardware_concurrency()) + " cores, " +
          system.sysname + " " + system.release;
-}
-
-std::string CaseListDigest(const IdIndex& cases) {
-  std::string text;
-  for (std::size_t i = 0; i < cases.size(); ++i) text += cases[i] + "\n";
-  return advisor::Sha256Hex(text);
 }
 
 // What decides the figures.
@@ -152,10 +145,9 @@ std::string UtcNow() {
   return text.data();
 }
 
-RunDescription DescribeRun(const Dataset& dataset, const IdIndex& cases,
-                           const RunOptions& options, const MethodRun& run,
-                           const RunOrigin& origin,
-                           const std::string& dataset_digest) {
+RunDescription DescribeRun(const DatasetFolder& dataset,
+                           const CaseSurvey& survey, const RunOptions& options,
+                           const MethodRun& run, const RunOrigin& origin) {
   RunDescription d;
   const MethodInfo& info = run.choice.info;
   d.method = info.method;
@@ -166,9 +158,9 @@ RunDescription DescribeRun(const Dataset& dataset, const IdIndex& cases,
   d.simulated = info.simulated;
   d.dataset_name = dataset.name;
   d.dataset_version = dataset.version;
-  d.dataset_digest = dataset_digest;
-  d.case_list_digest = CaseListDigest(cases);
-  d.num_cases = static_cast<std::int64_t>(cases.size());
+  d.dataset_digest = survey.dataset_digest;
+  d.case_list_digest = survey.case_list_digest;
+  d.num_cases = survey.num_selected;
   d.stride = options.lattice.stride;
   d.joints = JointsName(options.lattice.joints);
   d.corner_cutting = options.cost_model.corner_cutting;

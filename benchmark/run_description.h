@@ -61,11 +61,9 @@ struct RunDescription {
   bool SameFigures(const RunDescription& other) const;
 };
 
-/// `cases`: those of the run, in order.
-RunDescription DescribeRun(const Dataset& dataset, const IdIndex& cases,
-                           const RunOptions& options, const MethodRun& run,
-                           const RunOrigin& origin,
-                           const std::string& dataset_digest);
+RunDescription DescribeRun(const DatasetFolder& dataset,
+                           const CaseSurvey& survey, const RunOptions& options,
+                           const MethodRun& run, const RunOrigin& origin);
 
 Status WriteRunDescription(const RunDescription& description,
                            const std::string& path);

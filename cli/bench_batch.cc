@@ -36,9 +36,9 @@ struct ImportArguments {
 };
 
 int RunExport(ExportArguments& arguments) {
-  const Result<Dataset> dataset = ReadDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
-  auto cases = SelectCases(*dataset, arguments.cases);
+  auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);
   const auto written = benchmark::ExportBatch(*dataset, arguments.options,

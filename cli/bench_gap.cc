@@ -34,15 +34,12 @@ void PrintSummary(const std::vector<benchmark::GapSummary>& summaries) {
 }
 
 int RunGap(const GapArguments& arguments) {
-  const Result<Dataset> dataset = ReadDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
-  const auto gaps = benchmark::MeasureGaps(*dataset, arguments.options);
-  if (!gaps.ok()) return Fail(gaps.error());
-  const Status written = benchmark::WriteGaps(dataset->cases, *gaps,
-                                              arguments.options, arguments.out);
-  if (!written.ok()) return Fail(written.error());
-  PrintSummary(
-      benchmark::SummarizeGaps(dataset->cases, *gaps, arguments.options));
+  const auto summaries =
+      benchmark::MeasureGaps(*dataset, arguments.options, arguments.out);
+  if (!summaries.ok()) return Fail(summaries.error());
+  PrintSummary(*summaries);
   return kDone;
 }
 

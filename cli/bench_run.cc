@@ -104,9 +104,9 @@ Result<std::vector<MethodRun>> ChooseMethods(const RunArguments& arguments) {
 }
 
 int RunRun(RunArguments& arguments, const std::string& command_line) {
-  const Result<Dataset> dataset = ReadDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
-  auto cases = SelectCases(*dataset, arguments.cases);
+  auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);
   const auto runs = ChooseMethods(arguments);

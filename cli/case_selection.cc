@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "benchmark/run.h"
 #include "terrain/files/csv.h"
+#include "terrain/files/id_index.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::cli {
@@ -24,36 +24,31 @@ void AddCasesOption(CLI::App& command, std::string& cases) {
       ->type_name("FILE|N");
 }
 
-Result<std::vector<std::string>> SelectCases(const Dataset& dataset,
-                                             const std::string& text) {
-  if (text.empty()) return std::vector<std::string>{};
+Result<benchmark::CaseSelection> SelectCases(const std::string& text) {
+  benchmark::CaseSelection selection;
+  if (text.empty()) return selection;
   const Result<int> number = ParseInteger(text);
   if (number.ok() && *number < 1) {
     return Error{ErrorCode::kInvalid,
                  "--cases " + text + ": at least one case of each group"};
   }
-  if (number.ok()) return benchmark::FirstOfEachGroup(dataset, *number);
+  if (number.ok()) {
+    selection.first_of_each_group = *number;
+    return selection;
+  }
   const Result<std::string> file = ReadWholeFile(text, kMaxCaseListBytes);
   if (!file.ok()) return file.error();
-  std::vector<std::string> ids;
-  const IdIndex index = IndexOf(dataset.cases);
   std::istringstream lines(*file);
-  for (std::string id; lines >> id;) {
-    if (!index.Find(id)) {
-      return Error{ErrorCode::kInvalid,
-                   text + ": the dataset has no case '" + id + "'"};
-    }
-    ids.push_back(id);
-  }
-  if (ids.empty()) {
+  for (std::string id; lines >> id;) selection.ids.push_back(id);
+  if (selection.ids.empty()) {
     return Error{ErrorCode::kInvalid, text + ": names no case"};
   }
-  const std::optional<std::size_t> twice = IndexOf(ids).FirstDouble();
+  const std::optional<std::size_t> twice = IndexOf(selection.ids).FirstDouble();
   if (twice) {
     return Error{ErrorCode::kInvalid,
-                 text + ": names '" + ids[*twice] + "' twice"};
+                 text + ": names '" + selection.ids[*twice] + "' twice"};
   }
-  return ids;
+  return selection;
 }
 
 }  // namespace terra::cli

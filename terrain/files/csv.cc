@@ -1,12 +1,7 @@
 #include "terrain/files/csv.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <fstream>
-#include <functional>
-#include <limits>
 #include <utility>
 
 #include "terrain/files/whole_file.h"
@@ -15,9 +10,6 @@ namespace terra {
 namespace {
 
 constexpr std::size_t kMaxCsvBytes = std::size_t{1} << 30;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-using CsvUse = std::function<Status(CsvRow)>;
 
 Error LineError(const std::string& name, int line, const std::string& what) {
   return Error{ErrorCode::kInvalid,
@@ -110,67 +102,17 @@ Status CheckHeader(const std::vector<std::string>& header,
   return Done{};
 }
 
-// Reads a table that comes in parts, each of whole records.
-class TableReader {
- public:
-  explicit TableReader(const std::string& name) : name_(name) {}
+Status CheckWidth(const CsvRow& row, const std::vector<std::string>& header,
+                  const std::string& name) {
+  if (row.fields.size() == header.size()) return Done{};
+  return LineError(
+      name, row.line,
+      std::to_string(row.fields.size()) + " fields where the header has " +
+          std::to_string(header.size()) + " (fields with a comma need quotes)");
+}
 
-  Status Take(std::string_view part, const CsvUse& use) {
-    if (line_ == 1 && part.starts_with(kByteOrderMark)) {
-      part.remove_prefix(kByteOrderMark.size());
-    }
-    CsvScanner scanner(part, name_, line_);
-    while (!scanner.AtEnd()) {
-      Result<CsvRow> row = scanner.Next();
-      if (!row.ok()) return row.error();
-      if (IsEmptyLine(*row)) continue;
-      const Status taken = TakeRow(*std::move(row), use);
-      if (!taken.ok()) return taken;
-    }
-    line_ = scanner.line();
-    return Done{};
-  }
-
-  Status Finish() const {
-    if (!header_.empty()) return Done{};
-    return Error{ErrorCode::kInvalid, name_ + ": empty, no header row"};
-  }
-
- private:
-  Status TakeRow(CsvRow row, const CsvUse& use) {
-    if (header_.empty()) {
-      header_ = row.fields;
-      const Status header = CheckHeader(header_, name_);
-      return header.ok() ? use(std::move(row)) : header;
-    }
-    if (row.fields.size() != header_.size()) {
-      return LineError(name_, row.line,
-                       std::to_string(row.fields.size()) +
-                           " fields where the header has " +
-                           std::to_string(header_.size()) +
-                           " (fields with a comma need quotes)");
-    }
-    return use(std::move(row));
-  }
-
-  const std::string& name_;
-  std::vector<std::string> header_;
-  int line_ = 1;
-};
-
-// Whole records, some at a time: an odd number of quotes so far means that a
-// line break is inside a field.
-bool NextPart(std::ifstream& file, std::string& part) {
-  constexpr std::size_t kPartBytes = std::size_t{1} << 16;
-  part.clear();
-  std::string line;
-  bool inside = false;
-  while ((inside || part.size() < kPartBytes) && std::getline(file, line)) {
-    if (std::count(line.begin(), line.end(), '"') % 2 == 1) inside = !inside;
-    part += line;
-    if (!file.eof()) part += '\n';
-  }
-  return !part.empty();
+Error NoHeader(const std::string& name) {
+  return {ErrorCode::kInvalid, name + ": empty, no header row"};
 }
 
 Status CheckColumns(const CsvTable& table, const std::string& path,
@@ -196,20 +138,32 @@ int CsvTable::Column(std::string_view name) const {
 }
 
 Result<CsvTable> ParseCsv(std::string_view text, const std::string& name) {
+  if (text.starts_with(kCsvByteOrderMark)) {
+    text.remove_prefix(kCsvByteOrderMark.size());
+  }
   CsvTable table;
-  TableReader reader(name);
-  const Status read = reader.Take(text, [&](CsvRow row) -> Status {
-    if (table.header.empty()) {
-      table.header = std::move(row.fields);
+  CsvScanner scanner(text, name, 1);
+  while (!scanner.AtEnd()) {
+    Result<CsvRow> row = scanner.Next();
+    if (!row.ok()) return row.error();
+    if (IsEmptyLine(*row)) continue;
+    const bool first = table.header.empty();
+    const Status checked = first ? CheckHeader(row->fields, name)
+                                 : CheckWidth(*row, table.header, name);
+    if (!checked.ok()) return checked.error();
+    if (first) {
+      table.header = std::move(row->fields);
     } else {
-      table.rows.push_back(std::move(row));
+      table.rows.push_back(*std::move(row));
     }
-    return Done{};
-  });
-  if (!read.ok()) return read.error();
-  const Status finished = reader.Finish();
-  if (!finished.ok()) return finished.error();
+  }
+  if (table.header.empty()) return NoHeader(name);
   return table;
+}
+
+Result<CsvRow> ParseCsvRecord(std::string_view record, const std::string& name,
+                              int line) {
+  return CsvScanner(record, name, line).Next();
 }
 
 Result<CsvTable> ReadCsv(const std::string& path,
@@ -223,76 +177,63 @@ Result<CsvTable> ReadCsv(const std::string& path,
   return table;
 }
 
-Status ReadCsvRows(const std::string& path,
-                   std::initializer_list<std::string_view> columns,
-                   const CsvRowUse& use) {
+Result<CsvReader> CsvReader::Open(
+    const std::string& path, std::initializer_list<std::string_view> columns) {
   Result<std::ifstream> file = OpenToRead(path);
   if (!file.ok()) return file.error();
-  CsvTable table;  // Of its rows there is never one.
-  TableReader reader(path);
-  for (std::string part; NextPart(*file, part);) {
-    const Status read = reader.Take(part, [&](CsvRow row) -> Status {
-      if (!table.header.empty()) return use(table, std::move(row));
-      table.header = std::move(row.fields);
-      return CheckColumns(table, path, columns);
-    });
-    if (!read.ok()) return read.error();
-  }
-  if (file->bad()) {
-    return Error{ErrorCode::kUnavailable, path + ": cannot be read"};
-  }
-  return reader.Finish();
+  CsvReader reader(path, *std::move(file));
+  Result<std::optional<CsvRow>> header = reader.NextRecord();
+  if (!header.ok()) return header.error();
+  if (!header->has_value()) return NoHeader(path);
+  reader.table_.header = std::move((*header)->fields);
+  const Status checked = CheckHeader(reader.table_.header, path);
+  if (!checked.ok()) return checked.error();
+  const Status complete = CheckColumns(reader.table_, path, columns);
+  if (!complete.ok()) return complete.error();
+  return reader;
 }
 
-std::string CsvLine(const std::vector<std::string>& fields) {
-  std::string line;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (i > 0) line += ',';
-    // At the start of a text a byte order mark would not be read back.
-    if (fields[i].find_first_of(",\"\r\n") == std::string::npos &&
-        !fields[i].starts_with(kByteOrderMark)) {
-      line += fields[i];
-      continue;
+Result<std::optional<CsvRow>> CsvReader::Next() {
+  Result<std::optional<CsvRow>> row = NextRecord();
+  if (!row.ok() || !row->has_value()) return row;
+  const Status checked = CheckWidth(**row, table_.header, path_);
+  if (!checked.ok()) return checked.error();
+  return row;
+}
+
+Result<std::optional<CsvRow>> CsvReader::NextRecord() {
+  while (TakeRecord()) {
+    std::string_view record = record_;
+    if (line_ == 1 && record.starts_with(kCsvByteOrderMark)) {
+      record.remove_prefix(kCsvByteOrderMark.size());
     }
-    line += '"';
-    for (const char c : fields[i]) {
-      if (c == '"') line += '"';
-      line += c;
+    CsvScanner scanner(record, path_, line_);
+    if (scanner.AtEnd()) continue;  // Nothing but the byte order mark.
+    Result<CsvRow> row = scanner.Next();
+    if (!row.ok()) return row.error();
+    line_ = scanner.line();
+    if (!IsEmptyLine(*row)) return std::optional(*std::move(row));
+  }
+  if (file_.bad()) {
+    return Error{ErrorCode::kUnavailable, path_ + ": cannot be read"};
+  }
+  return std::optional<CsvRow>();
+}
+
+// An odd number of quotes so far means that a line break is inside a field.
+bool CsvReader::TakeRecord() {
+  constexpr std::size_t kMaxRecordBytes = std::size_t{1} << 24;
+  record_.clear();
+  bool inside = false;
+  while ((inside || record_.empty()) && record_.size() < kMaxRecordBytes &&
+         std::getline(file_, next_line_)) {
+    if (std::count(next_line_.begin(), next_line_.end(), '"') % 2 == 1) {
+      inside = !inside;
     }
-    line += '"';
+    record_ += next_line_;
+    if (!file_.eof()) record_ += '\n';
   }
-  return line + "\n";
-}
-
-std::string FormatNumber(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  std::array<char, 32> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return std::string(buffer.data(), end.ptr);
-}
-
-Result<double> ParseNumber(std::string_view text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  if (text == "inf") return std::numeric_limits<double>::infinity();
-  if (parsed.ec != std::errc() || parsed.ptr != end || !std::isfinite(value)) {
-    return Error{ErrorCode::kInvalid,
-                 "'" + std::string(text) + "' is not a number"};
-  }
-  return value;
-}
-
-Result<int> ParseInteger(std::string_view text) {
-  int value = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end) {
-    return Error{ErrorCode::kInvalid,
-                 "'" + std::string(text) + "' is not an integer"};
-  }
-  return value;
+  return !record_.empty();
 }
 
 }  // namespace terra

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <fstream>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "terrain/result.h"
@@ -36,14 +38,42 @@ Result<CsvTable> ParseCsv(std::string_view text, const std::string& name);
 Result<CsvTable> ReadCsv(const std::string& path,
                          std::initializer_list<std::string_view> columns);
 
-/// What is done with a record; `table` has the header and no rows.
-using CsvRowUse = std::function<Status(const CsvTable& table, CsvRow row)>;
+/// Reads one record, which may have line breaks in quotes; it begins in this
+/// line.
+Result<CsvRow> ParseCsvRecord(std::string_view record, const std::string& name,
+                              int line);
 
-/// The same for tables of any length: record by record, in bounded memory. An
-/// error of `use` ends it.
-Status ReadCsvRows(const std::string& path,
-                   std::initializer_list<std::string_view> columns,
-                   const CsvRowUse& use);
+/// The same for tables of any length: record by record, in bounded memory (a
+/// record has at most 16 MB).
+class CsvReader {
+ public:
+  /// Reads the header. Errors: as ReadCsv.
+  static Result<CsvReader> Open(
+      const std::string& path, std::initializer_list<std::string_view> columns);
+
+  /// The header; it has no rows.
+  const CsvTable& table() const { return table_; }
+
+  /// The next record; none at the end.
+  Result<std::optional<CsvRow>> Next();
+
+ private:
+  CsvReader(std::string path, std::ifstream file)
+      : path_(std::move(path)), file_(std::move(file)) {}
+
+  Result<std::optional<CsvRow>> NextRecord();
+  bool TakeRecord();
+
+  std::string path_;
+  std::ifstream file_;
+  CsvTable table_;
+  std::string record_;
+  std::string next_line_;
+  int line_ = 1;  ///< Of the next record.
+};
+
+/// Excel and others put it before a text in UTF-8.
+inline constexpr std::string_view kCsvByteOrderMark = "\xEF\xBB\xBF";
 
 /// Returns one line of CSV with its line feed, quoting where needed.
 std::string CsvLine(const std::vector<std::string>& fields);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "terrain/cell.h"
-#include "terrain/files/csv.h"
 #include "terrain/files/id_index.h"
 #include "terrain/legend.h"
 #include "terrain/map.h"
@@ -26,14 +25,19 @@ struct DatasetCase {
 };
 
 /// A folder with cases.csv, dataset.json, maps and, unless the maps are of the
-/// multiterrapath legend, legend.csv.
-struct Dataset {
+/// multiterrapath legend, legend.csv: all but its cases, of which there may be
+/// any number (case_reader.h reads them one by one).
+struct DatasetFolder {
   std::string folder;
   std::string name;     ///< dataset.json "name".
   std::string version;  ///< dataset.json "version"; empty where it has none.
   std::string digest;   ///< dataset.json "digest"; empty where it has none.
   std::string json;     ///< dataset.json as it stands.
   Legend legend;
+};
+
+/// The same with its cases.
+struct Dataset : DatasetFolder {
   std::vector<DatasetCase> cases;  ///< In order of cases.csv.
 
   /// Returns the case of an id, or nullptr. Takes time; for many ids there is
@@ -44,14 +48,16 @@ struct Dataset {
 /// The index of cases by their ids. The list must stay as it is.
 IdIndex IndexOf(const std::vector<DatasetCase>& cases);
 
-/// Reads the folder's tables, no maps. A missing dataset.json leaves name,
-/// version, digest and json empty.
-/// Errors: name the file and line; case ids must be unique and map paths stay
-/// inside the folder.
+/// Reads legend.csv and dataset.json. A missing dataset.json leaves name,
+/// version, digest and json empty. Errors: name the file and line.
+Result<DatasetFolder> OpenDataset(const std::string& folder);
+
+/// Reads the folder's tables, no maps. Errors: those of OpenDataset and
+/// CheckCases.
 Result<Dataset> ReadDataset(const std::string& folder);
 
 /// Reads the map of a case.
-Result<TerrainMap> ReadCaseMap(const Dataset& dataset,
+Result<TerrainMap> ReadCaseMap(const DatasetFolder& dataset,
                                const DatasetCase& dataset_case,
                                const CostModel& model = {});
 

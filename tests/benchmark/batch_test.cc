@@ -118,7 +118,7 @@ class Batch : public ::testing::TestWithParam<std::string> {
     advisor::LlmBackendOptions llm;
     llm.service.backend = provider;
     RunOptions options;
-    options.cases = cases;
+    options.cases.ids = cases;
     const auto written =
         ExportBatch(dataset_, options, llm, {folder_.Path(out), except, false});
     EXPECT_TRUE(written.ok()) << ErrorMessage(written);
@@ -160,7 +160,7 @@ class Batch : public ::testing::TestWithParam<std::string> {
     EXPECT_TRUE(made.ok()) << ErrorMessage(made);
     RunOptions run;
     run.jobs = 1;
-    run.cases = cases;
+    run.cases.ids = cases;
     const Status done = RunMethods(
         dataset_, run,
         {{made->choice, folder_.Path("run"), made->settings_json}}, {});

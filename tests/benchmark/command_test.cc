@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/case_result.h"
+#include "benchmark/results_reader.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_folder.h"

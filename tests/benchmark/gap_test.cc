@@ -1,17 +1,23 @@
 #include "benchmark/gap.h"
 
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "terrain/files/legend_file.h"
+#include "terrain/files/map_file.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/ascii_map.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::benchmark {
 namespace {
 
+using terra::testing::ErrorMessage;
 using terra::testing::MapFromAscii;
 using terra::testing::TempFolder;
 
@@ -36,16 +42,18 @@ TEST(MeasureGap, IsInfiniteWhereThereIsNoRoute) {
   EXPECT_THAT(gap.baseline_costs, ::testing::Each(kImpassable));
 }
 
-TEST(SummarizeGaps, CountsOnlyComparableCasesAndRealGaps) {
+TEST(GapSummaries, CountOnlyComparableCasesAndRealGaps) {
   // Hand-computed: 4 comparable cases of 5; gaps 0.2 and 0.5; a tie and a
   // difference below epsilon are no gaps.
-  std::vector<DatasetCase> cases(5);
-  for (DatasetCase& c : cases) c.group = "easy";
-  const std::vector<CaseGap> gaps = {
-      {{10}, 8}, {{10}, 5}, {{10}, 10}, {{10}, 10 - 5e-7}, {{kImpassable}, 5}};
-  GapOptions options;
-  options.strides = {50};
-  const std::vector<GapSummary> rows = SummarizeGaps(cases, gaps, options);
+  GapSummaries summaries({50});
+  for (const CaseGap& gap : std::vector<CaseGap>{{{10}, 8},
+                                                 {{10}, 5},
+                                                 {{10}, 10},
+                                                 {{10}, 10 - 5e-7},
+                                                 {{kImpassable}, 5}}) {
+    summaries.Add("easy", gap);
+  }
+  const std::vector<GapSummary> rows = summaries.Rows();
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0].paths, 5);
   EXPECT_EQ(rows[0].comparable, 4);
@@ -53,19 +61,57 @@ TEST(SummarizeGaps, CountsOnlyComparableCasesAndRealGaps) {
   EXPECT_DOUBLE_EQ(rows[0].mean_gap, 0.35);
 }
 
-TEST(WriteGaps, HasARowPerCaseAndStride) {
-  const TempFolder folder;
-  std::vector<DatasetCase> cases(2);
-  cases[0].case_id = "a";
-  cases[1].case_id = "b";
-  GapOptions options;
-  options.strides = {10, 20};
-  ASSERT_TRUE(WriteGaps(cases, {{{3, 4}, 2.5}, {{kImpassable, 7}, 6}}, options,
-                        folder.Path("gap.csv"))
-                  .ok());
-  EXPECT_EQ(ReadWholeFile(folder.Path("gap.csv"), 1000).value(),
-            "case_id,stride,baseline_cost,oracle_cost\n"
-            "a,10,3,2.5\na,20,4,2.5\nb,10,inf,6\nb,20,7,6\n");
+class MeasureGapsTest : public ::testing::Test {
+ protected:
+  // One map of three cells in a row, the last one blocked.
+  void WriteCases(const std::string& cases) {
+    const TerrainMap map = MapFromAscii({"11#"});
+    folder_.Write("legend.csv", "");
+    ASSERT_TRUE(WriteLegend(map.legend(), folder_.Path("legend.csv")).ok());
+    ASSERT_TRUE(WriteIdPng(map, folder_.Path("m.png")).ok());
+    folder_.Write("cases.csv",
+                  "case_id,map,start_x,start_y,goal_x,goal_y\n" + cases);
+  }
+
+  Result<std::vector<GapSummary>> Measure(std::vector<int> strides) {
+    GapOptions options;
+    options.strides = std::move(strides);
+    return MeasureGaps(OpenDataset(folder_.Path("")).value(), options,
+                       folder_.Path("gap.csv"));
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MeasureGapsTest, WriteARowPerCaseAndStrideInOrderOfTheCases) {
+  std::string cases;
+  std::string rows = "case_id,stride,baseline_cost,oracle_cost\n";
+  // Far more than are under way at once.
+  for (int i = 0; i < 500; ++i) {
+    const std::string id = std::to_string(i);
+    cases += id + (i % 3 == 0 ? ",m.png,0,0,2,0\n" : ",m.png,0,0,1,0\n");
+    const char* costs = i % 3 == 0 ? ",inf,inf\n" : ",1,1\n";
+    rows.append(id).append(",1").append(costs);
+    rows.append(id).append(",2").append(costs);
+  }
+  WriteCases(cases);
+  const auto summaries = Measure({1, 2});
+  ASSERT_TRUE(summaries.ok()) << ErrorMessage(summaries);
+  EXPECT_EQ(summaries->at(1).paths, 500);
+  EXPECT_EQ(summaries->at(1).comparable, 333);
+  EXPECT_EQ(ReadWholeFile(folder_.Path("gap.csv"), 1 << 20).value(), rows);
+}
+
+TEST_F(MeasureGapsTest, AFaultLeavesNoFile) {
+  for (const auto& [cases, why] :
+       {std::pair<std::string, std::string>{
+            "a,m.png,0,0,1,0\na,m.png,0,0,1,0\n",
+            "cases.csv:3: case_id 'a' comes"},
+        {"a,m.png,0,0,1,0\nb,no.png,0,0,1,0\n", "no.png"}}) {
+    WriteCases(cases);
+    EXPECT_THAT(ErrorMessage(Measure({1})), ::testing::HasSubstr(why));
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("gap.csv")));
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "benchmark/case_result.h"
 #include "benchmark/generate_dataset.h"
 #include "benchmark/loaded_run.h"
+#include "benchmark/results_reader.h"
 #include "benchmark/run.h"
 #include "benchmark/run_description.h"
 #include "terrain/files/whole_file.h"
@@ -83,7 +84,7 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
 
 TEST_F(MergeTest, ColumnsOfCandidatesAreKept) {
   RunOptions options;
-  options.cases = {"easy_0000", "hard_0000"};
+  options.cases.ids = {"easy_0000", "hard_0000"};
   for (const int i : {1, 2}) {
     options.shard = {i, 2};
     Run("shard" + std::to_string(i), options, true);
@@ -140,7 +141,7 @@ TEST_F(MergeTest, AShardThatCannotBeIsRefused) {
 
 TEST_F(MergeTest, MoreShardsThanCasesAreMergedAsWell) {
   RunOptions options;
-  options.cases = {"easy_0001", "hard_0001"};
+  options.cases.ids = {"easy_0001", "hard_0001"};
   Run("whole", options);
   std::vector<std::string> shards;
   for (const int i : {3, 1, 2}) {
@@ -172,7 +173,7 @@ TEST_F(MergeTest, RunsThatDifferCannotStandInOneTable) {
   options.lattice.stride = 20;
   Run("b", options);
   options = {};
-  options.cases = {"easy_0001", "hard_0001"};
+  options.cases.ids = {"easy_0001", "hard_0001"};
   Run("c", options);
   auto runs =
       LoadRuns({folder_.Path("a"), folder_.Path("b"), folder_.Path("c")});

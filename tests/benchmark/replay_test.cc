@@ -7,6 +7,7 @@
 #include "benchmark/llm_method.h"
 #include "benchmark/loaded_run.h"
 #include "benchmark/paper_tables.h"
+#include "benchmark/results_reader.h"
 #include "benchmark/run.h"
 #include "benchmark/run_labels.h"
 #include "tests/benchmark/metrics_of_all.h"
@@ -102,7 +103,7 @@ TEST_F(Replay, QuestionsThatWereNotRecordedHaveNoAnswer) {
   ASSERT_TRUE(made.ok());
   RunOptions run;
   run.jobs = 1;
-  run.cases = {"easy_0000"};
+  run.cases.ids = {"easy_0000"};
   ASSERT_TRUE(
       RunMethods(ReadDataset(TERRA_TEST_DATA "/llm-answers").value(), run,
                  {{made->choice, folder_.Path("x"), made->settings_json}}, {})

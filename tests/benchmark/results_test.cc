@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -5,6 +6,7 @@
 
 #include "benchmark/case_result.h"
 #include "benchmark/results_file.h"
+#include "benchmark/results_reader.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temp_folder.h"
@@ -18,7 +20,20 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const std::vector<std::string> kIds = {"a", "b", "c"};
-const IdIndex kAbc = IndexOf(kIds);
+
+const CaseIds kAbc = [](const auto& use) -> Status {
+  for (const std::string& id : kIds) {
+    const Status used = use(id);
+    if (!used.ok()) return used;
+  }
+  return Done{};
+};
+
+// Adds a row of one of these cases.
+Status Append(ResultsFile& file, const CaseResult& result) {
+  const auto place = std::find(kIds.begin(), kIds.end(), result.case_id);
+  return file.Append(static_cast<std::size_t>(place - kIds.begin()), result);
+}
 
 CaseResult FullResult() {
   CaseResult r;
@@ -119,7 +134,7 @@ TEST(ResultsFile, FinishedHasTheRowsInOrderOfTheCases) {
   const std::string path = folder.Path("r.csv");
   const auto file = OpenAbc(path);
   for (const char* id : {"c", "a", "b"}) {
-    ASSERT_TRUE(file->Append(Row(id)).ok());
+    ASSERT_TRUE(Append(*file, Row(id)).ok());
   }
   ASSERT_TRUE(file->Finish().ok());
   EXPECT_THAT(IdsIn(path), ElementsAre("a", "b", "c"));
@@ -128,7 +143,7 @@ TEST(ResultsFile, FinishedHasTheRowsInOrderOfTheCases) {
 TEST(ResultsFile, ReopenedKnowsWhatIsDone) {
   const TempFolder folder;
   const std::string path = folder.Path("r.csv");
-  ASSERT_TRUE(OpenAbc(path)->Append(Row("b")).ok());
+  ASSERT_TRUE(Append(*OpenAbc(path), Row("b")).ok());
   const auto file = OpenAbc(path);
   EXPECT_FALSE(file->IsDone(0, 0));
   EXPECT_TRUE(file->IsDone(1, 0));
@@ -144,8 +159,8 @@ TEST(ResultsFile, ATornLastLineIsCutOffAtEveryByte) {
         folder.Write("r.csv", whole + last.substr(0, length));
     const auto file = OpenAbc(path);
     ASSERT_EQ(file->num_done(), 1) << length;
-    ASSERT_TRUE(file->Append(Row("b")).ok());
-    ASSERT_TRUE(file->Append(Row("c")).ok());
+    ASSERT_TRUE(Append(*file, Row("b")).ok());
+    ASSERT_TRUE(Append(*file, Row("c")).ok());
     ASSERT_TRUE(file->Finish().ok());
     ASSERT_THAT(IdsIn(path), ElementsAre("a", "b", "c")) << length;
   }
@@ -162,16 +177,66 @@ TEST(ResultsFile, CasesWithoutAnAnswerAreAskedAgain) {
   const std::string path = folder.Path("r.csv");
   {
     const auto file = OpenAbc(path);
-    ASSERT_TRUE(file->Append(Row("a", AttemptKind::kNoAnswer)).ok());
-    ASSERT_TRUE(file->Append(Row("b")).ok());
+    ASSERT_TRUE(Append(*file, Row("a", AttemptKind::kNoAnswer)).ok());
+    ASSERT_TRUE(Append(*file, Row("b")).ok());
     ASSERT_TRUE(file->Finish().ok());
     EXPECT_THAT(IdsIn(path), ElementsAre("a", "b"));
   }
   const auto file = OpenAbc(path);
   EXPECT_FALSE(file->IsDone(0, 0));
-  ASSERT_TRUE(file->Append(Row("a")).ok());
+  ASSERT_TRUE(Append(*file, Row("a")).ok());
   ASSERT_TRUE(file->Finish().ok());
   EXPECT_THAT(IdsIn(path), ElementsAre("a", "b"));
+}
+
+TEST(ResultsFile, RowsOfSeveralStartsArePutIntoOrder) {
+  // What was asked again stands behind the others when it was killed then.
+  const TempFolder folder;
+  const std::string path = folder.Path("r.csv");
+  std::string rows = ResultsHeader();
+  for (const char* id : {"c", "b", "a"}) rows += ResultLine(Row(id));
+  folder.Write("r.csv", rows);
+  EXPECT_EQ(OpenAbc(path)->num_done(), 3);
+  EXPECT_THAT(IdsIn(path), ElementsAre("a", "b", "c"));
+}
+
+TEST(ResultsFile, RepeatsStandTogetherWhicheverWasAskedLast) {
+  const TempFolder folder;
+  const std::string path = folder.Path("r.csv");
+  std::vector<CaseResult> wanted;
+  for (const char* id : {"a", "b", "c"}) {
+    for (const int repeat : {0, 1, 2}) {
+      wanted.push_back(Row(id));
+      wanted.back().repeat = repeat;
+    }
+  }
+  std::string rows = ResultsHeader();
+  for (const int i : {0, 2, 3, 4, 8, /* second start */ 1, 6, 7}) {
+    rows += ResultLine(wanted[static_cast<std::size_t>(i)]);
+  }
+  folder.Write("r.csv", rows);
+  auto file = ResultsFile::Open(path, kAbc, 3);
+  ASSERT_TRUE(file.ok()) << ErrorMessage(file);
+  EXPECT_FALSE((*file)->IsDone(1, 2));
+  EXPECT_TRUE((*file)->IsDone(2, 2));
+  ASSERT_TRUE(Append(**file, wanted[5]).ok());
+  ASSERT_TRUE((*file)->Finish().ok());
+  std::vector<CaseResult> read;
+  ASSERT_TRUE(ReadResults(path, [&](CaseResult r) {
+                read.push_back(std::move(r));
+              }).ok());
+  EXPECT_EQ(read, wanted);
+}
+
+TEST(ResultsFile, RefusesRowsInNoOrder) {
+  const TempFolder folder;
+  std::string rows = ResultsHeader();
+  for (std::size_t i = 0; i <= kMaxSortedParts; ++i) {
+    rows += ResultLine(Row("b"));
+  }
+  const std::string path = folder.Write("r.csv", rows);
+  EXPECT_THAT(ErrorMessage(ResultsFile::Open(path, kAbc, 1)),
+              HasSubstr("in no order of the cases"));
 }
 
 TEST(ResultsFile, IsLockedAgainstASecondWriter) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/generate_dataset.h"
+#include "benchmark/results_reader.h"
 #include "benchmark/run_description.h"
 #include "terrain/digest.h"
 #include "terrain/files/whole_file.h"
@@ -92,8 +93,14 @@ class RunTest : public ::testing::Test {
     return results;
   }
 
+  std::vector<std::string> IdsOf(const std::string& name) {
+    std::vector<std::string> ids;
+    for (const CaseResult& r : ResultsOf(name)) ids.push_back(r.case_id);
+    return ids;
+  }
+
   TempFolder folder_;
-  Dataset dataset_{"", "", "", "", "", terra::testing::AsciiLegend(), {}};
+  Dataset dataset_{{"", "", "", "", "", terra::testing::AsciiLegend()}, {}};
   std::atomic<int> calls_{0};
 };
 
@@ -245,8 +252,24 @@ TEST_F(RunTest, ShardsPartTheCases) {
 }
 
 TEST_F(RunTest, TheFirstCasesOfEachGroupCanBeChosen) {
-  EXPECT_THAT(FirstOfEachGroup(dataset_, 2),
+  RunOptions options;
+  options.cases.first_of_each_group = 2;
+  ASSERT_TRUE(
+      RunMethods(dataset_, options, {Named("coarse", "", "out")}, {}).ok());
+  EXPECT_THAT(IdsOf("out"),
               ElementsAre("easy_0000", "easy_0001", "hard_0000", "hard_0001"));
+}
+
+TEST_F(RunTest, ListedCasesStandInOrderOfTheDataset) {
+  RunOptions options;
+  options.cases.ids = {"hard_0002", "easy_0003", "easy_0001"};
+  ASSERT_TRUE(
+      RunMethods(dataset_, options, {Named("coarse", "", "out")}, {}).ok());
+  EXPECT_THAT(IdsOf("out"), ElementsAre("easy_0001", "easy_0003", "hard_0002"));
+  options.cases.ids.emplace_back("easy_0009");
+  EXPECT_THAT(ErrorMessage(RunMethods(dataset_, options,
+                                      {Named("coarse", "", "other")}, {})),
+              HasSubstr("has no case 'easy_0009'"));
 }
 
 TEST_F(RunTest, UnknownMethodsAndBackendsAreNamedWithThoseThereAre) {
@@ -278,7 +301,7 @@ TEST_F(RunTest, KeepsWhenReplayedAnswersWereRecorded) {
   };
   RunOptions options;
   options.jobs = 1;
-  options.cases = FirstOfEachGroup(dataset_, 2);
+  options.cases.first_of_each_group = 2;
   ASSERT_TRUE(RunMethods(dataset_, options, {Run("replay", replay)}, {}).ok());
   const RunDescription run =
       ReadRunDescription(folder_.Path("replay/run.json")).value();

@@ -11,6 +11,7 @@
 
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
@@ -79,7 +80,9 @@ std::optional<int> ChildProcess::WaitForExit(milliseconds at_most) {
   pollfd ended{pid_fd_, POLLIN, 0};
   if (::poll(&ended, 1, static_cast<int>(at_most.count())) <= 0) return {};
   int status = 0;
-  ::waitpid(pid_, &status, 0);
+  rusage used{};
+  ::wait4(pid_, &status, 0, &used);
+  peak_kilobytes_ = used.ru_maxrss;
   exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return exit_code_;
 }
@@ -122,8 +125,9 @@ std::string ChildProcess::output() const {
 
 RunResult RunToEnd(const std::vector<std::string>& command) {
   ChildProcess process(command);
-  const std::optional<int> code = process.WaitForExit(std::chrono::seconds(150));
-  return {code.value_or(-1), process.output()};
+  const std::optional<int> code =
+      process.WaitForExit(std::chrono::seconds(150));
+  return {code.value_or(-1), process.output(), process.peak_kilobytes()};
 }
 
 std::string ProgramPath(const std::string& name) {

@@ -41,17 +41,22 @@ class ChildProcess {
   /// What it wrote so far to standard output and error.
   std::string output() const;
 
+  /// The most memory it had resident, in kB; 0 until it has ended.
+  long peak_kilobytes() const { return peak_kilobytes_; }
+
  private:
   pid_t pid_ = -1;
   int pid_fd_ = -1;
   int output_fd_ = -1;
   std::optional<int> exit_code_;
+  long peak_kilobytes_ = 0;
 };
 
 /// Runs a program to its end and returns its exit code and output.
 struct RunResult {
   int exit_code = -1;
   std::string output;
+  long peak_kilobytes = 0;  ///< Resident; at least what this process has.
 };
 RunResult RunToEnd(const std::vector<std::string>& command);
 

@@ -62,17 +62,19 @@ TEST(Csv, AMissingColumnIsNamed) {
               HasSubstr("no column 'k'"));
 }
 
-// What ReadCsvRows gives of a file, a line each; its error last.
+// What a CsvReader gives of a file, a line each; its error last.
 std::vector<std::string> RowsOf(const std::string& path) {
   std::vector<std::string> rows;
-  const Status read = ReadCsvRows(
-      path, {"a"}, [&](const CsvTable& table, const CsvRow& row) -> Status {
-        EXPECT_EQ(table.Column("a"), 0);
-        rows.push_back(std::to_string(row.line) + " " + CsvLine(row.fields));
-        return Done{};
-      });
-  if (!read.ok()) rows.push_back(ErrorMessage(read));
-  return rows;
+  auto reader = CsvReader::Open(path, {"a"});
+  if (!reader.ok()) return {ErrorMessage(reader)};
+  EXPECT_EQ(reader->table().Column("a"), 0);
+  for (;;) {
+    const Result<std::optional<CsvRow>> row = reader->Next();
+    if (!row.ok()) rows.push_back(ErrorMessage(row));
+    if (!row.ok() || !row->has_value()) return rows;
+    rows.push_back(std::to_string((*row)->line) + " " +
+                   CsvLine((*row)->fields));
+  }
 }
 
 TEST(Csv, RowByRowALongTableIsTheSame) {

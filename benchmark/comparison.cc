@@ -1,7 +1,7 @@
 #include "benchmark/comparison.h"
 
-#include <string>
-#include <unordered_map>
+#include <algorithm>
+#include <vector>
 
 #include "benchmark/clustered_mean.h"
 
@@ -10,21 +10,30 @@ namespace {
 
 // What a comparison needs of a case.
 struct Outcome {
+  std::uint64_t key = 0;
   double recovery = 0;
   bool lower = false;
   bool gap = false;
 };
-using Outcomes = std::unordered_map<std::string, Outcome>;
 
-Result<Outcomes> ReadOutcomes(const ScoreReader& reader,
-                              const CountingRule& rule) {
-  Outcomes outcomes;
+bool KeyIsLess(const Outcome& outcome, std::uint64_t key) {
+  return outcome.key < key;
+}
+
+// In order of their keys.
+Result<std::vector<Outcome>> ReadOutcomes(const ScoreReader& reader,
+                                          const CountingRule& rule) {
+  std::vector<Outcome> outcomes;
   const Status read = reader([&](const Score& score) {
     const CaseCounts c = CountCase(score, rule);
     if (score.repeat != 0 || !c.path) return;
-    outcomes.emplace(score.case_id, Outcome{c.recovery, c.lower, c.gap});
+    outcomes.push_back({CaseKey(score.case_id), c.recovery, c.lower, c.gap});
   });
   if (!read.ok()) return read.error();
+  std::sort(outcomes.begin(), outcomes.end(),
+            [](const Outcome& a, const Outcome& b) {
+              return a.key < b.key;
+            });
   return outcomes;
 }
 
@@ -34,14 +43,17 @@ Result<Comparison> ComparePaired(const ScoreReader& first,
                                  const CountingRule& first_rule,
                                  const ScoreReader& second,
                                  const CountingRule& second_rule) {
-  const Result<Outcomes> of_first = ReadOutcomes(first, first_rule);
+  const Result<std::vector<Outcome>> of_first = ReadOutcomes(first, first_rule);
   if (!of_first.ok()) return of_first.error();
   Comparison result;
   ClusteredMean mogr;
   const Status read = second([&](const Score& score) {
-    const auto found = of_first->find(score.case_id);
-    if (score.repeat != 0 || found == of_first->end()) return;
-    const Outcome& a = found->second;
+    const std::uint64_t key = CaseKey(score.case_id);
+    const auto found =
+        std::lower_bound(of_first->begin(), of_first->end(), key, KeyIsLess);
+    const bool both = found != of_first->end() && found->key == key;
+    if (score.repeat != 0 || !both) return;
+    const Outcome& a = *found;
     const CaseCounts b = CountCase(score, second_rule);
     if (!b.path) return;
     ++result.cases;

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "benchmark/integer_random.h"
@@ -45,7 +43,7 @@ std::uint64_t Mixed(std::uint64_t digest, std::uint64_t more) {
 
 // Chains what identifies the case of a row to those before.
 std::uint64_t CasesDigest(std::uint64_t digest, const Score& score) {
-  digest = Mixed(digest, std::hash<std::string>{}(score.case_id));
+  digest = Mixed(digest, CaseKey(score.case_id));
   digest = Mixed(digest, static_cast<std::uint64_t>(score.map_id));
   return Mixed(digest, std::bit_cast<std::uint64_t>(score.baseline_cost));
 }
@@ -70,53 +68,77 @@ GroupBuilder& BuilderOf(std::vector<GroupBuilder>& builders,
 
 // A case as two runs must have it alike.
 struct CaseFacts {
+  std::uint64_t key = 0;
   std::int64_t map_id = 0;
   double baseline_cost = 0;
 };
+
+bool KeyIsLess(const CaseFacts& a, const CaseFacts& b) {
+  return a.key < b.key;
+}
+
+// In order of the keys.
+Result<std::vector<CaseFacts>> ReadFacts(const LoadedRun& run) {
+  std::vector<CaseFacts> facts;
+  const Status read = run.read([&](const Score& score) {
+    if (score.repeat != 0) return;
+    facts.push_back(
+        {CaseKey(score.case_id), score.map_id, score.baseline_cost});
+  });
+  if (!read.ok()) return read.error();
+  std::sort(facts.begin(), facts.end(), KeyIsLess);
+  return facts;
+}
 
 // The first case that both have on different maps or baselines. Runs with the
 // same cases have none, which is seen without reading their rows.
 Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b) {
   std::string different;
   if (a.cases_digest == b.cases_digest) return different;
-  std::unordered_map<std::string, CaseFacts> of_a;
-  const Status read_a = a.read([&](const Score& score) {
-    of_a.emplace(score.case_id, CaseFacts{score.map_id, score.baseline_cost});
-  });
-  if (!read_a.ok()) return read_a.error();
-  const Status read_b = b.read([&](const Score& score) {
-    const auto found = of_a.find(score.case_id);
-    if (!different.empty() || found == of_a.end()) return;
-    if (score.map_id != found->second.map_id ||
-        score.baseline_cost != found->second.baseline_cost) {
+  const auto of_a = ReadFacts(a);
+  if (!of_a.ok()) return of_a.error();
+  const Status read = b.read([&](const Score& score) {
+    const CaseFacts in_b{CaseKey(score.case_id), score.map_id,
+                         score.baseline_cost};
+    const auto found =
+        std::lower_bound(of_a->begin(), of_a->end(), in_b, KeyIsLess);
+    if (!different.empty() || found == of_a->end() || found->key != in_b.key) {
+      return;
+    }
+    if (in_b.map_id != found->map_id ||
+        in_b.baseline_cost != found->baseline_cost) {
       different = score.case_id;
     }
   });
-  if (!read_b.ok()) return read_b.error();
+  if (!read.ok()) return read.error();
   return different;
 }
 
-using IdSet = std::unordered_set<std::string>;
+// In ascending order.
+using Keys = std::vector<std::uint64_t>;
 
-// The ids that every run has.
-Result<IdSet> CommonIds(const std::vector<LoadedRun>& runs) {
-  struct Seen {
-    std::size_t runs = 0;
-    std::size_t last = 0;  // A run names a case once for each repeat.
-  };
-  std::unordered_map<std::string, Seen> seen;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Status read = runs[i].read([&](const Score& score) {
-      Seen& of_case = seen[score.case_id];
-      if (of_case.runs > 0 && of_case.last == i) return;
-      ++of_case.runs;
-      of_case.last = i;
+Result<Keys> KeysOf(const LoadedRun& run) {
+  Keys keys;
+  const Status read = run.read([&](const Score& score) {
+    const std::uint64_t key = CaseKey(score.case_id);
+    // A run names a case once for each repeat.
+    if (keys.empty() || keys.back() != key) keys.push_back(key);
+  });
+  if (!read.ok()) return read.error();
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+// The cases that every run has. Pre: there is one.
+Result<Keys> CommonKeys(const std::vector<LoadedRun>& runs) {
+  Result<Keys> common = KeysOf(runs.front());
+  for (std::size_t i = 1; common.ok() && i < runs.size(); ++i) {
+    const Result<Keys> keys = KeysOf(runs[i]);
+    if (!keys.ok()) return keys.error();
+    std::erase_if(*common, [&](std::uint64_t key) {
+      return !std::binary_search(keys->begin(), keys->end(), key);
     });
-    if (!read.ok()) return read.error();
-  }
-  IdSet common;
-  for (const auto& [id, of_case] : seen) {
-    if (of_case.runs == runs.size()) common.insert(id);
   }
   return common;
 }
@@ -220,14 +242,16 @@ Status KeepCommonCases(std::vector<LoadedRun>& runs) {
         return run.cases_digest == runs.front().cases_digest;
       });
   if (same) return Done{};
-  Result<IdSet> ids = CommonIds(runs);
-  if (!ids.ok()) return ids.error();
-  const auto common = std::make_shared<const IdSet>(*std::move(ids));
+  Result<Keys> keys = CommonKeys(runs);
+  if (!keys.ok()) return keys.error();
+  const auto common = std::make_shared<const Keys>(*std::move(keys));
   for (LoadedRun& run : runs) {
     run.read = [common, all = std::move(run.read)](
                    const std::function<void(const Score&)>& use) {
       return all([&](const Score& score) {
-        if (common->contains(score.case_id)) use(score);
+        const bool taken = std::binary_search(common->begin(), common->end(),
+                                              CaseKey(score.case_id));
+        if (taken) use(score);
       });
     };
     const Status summed = SumUp(run);

@@ -41,6 +41,10 @@ Score ToScore(const CaseResult& r) {
           r.candidates_invalid};
 }
 
+std::uint64_t CaseKey(const std::string& case_id) {
+  return std::hash<std::string>{}(case_id);
+}
+
 CaseCounts CountCase(const Score& score, const CountingRule& rule) {
   CaseCounts c;
   if (score.kind == AttemptKind::kNoBaseline) return c;
@@ -103,7 +107,6 @@ void MetricsBuilder::Add(const Score& score) {
   t_prep_.push_back(score.t_prep);
   t_llm_.push_back(score.t_llm);
   t_det_.push_back(score.t_det);
-  t_e2e_.push_back(score.t_e2e());
   m.tokens_in += score.tokens_in;
   m.tokens_out += score.tokens_out;
   m.spend += score.spend;
@@ -129,16 +132,20 @@ Metrics MetricsBuilder::Finish() {
 }
 
 void MetricsBuilder::MeasureTimes() {
-  if (t_e2e_.empty()) return;
+  if (t_prep_.empty()) return;
   Metrics& m = metrics_;
-  const auto n = static_cast<double>(t_e2e_.size());
-  const double total = std::accumulate(t_e2e_.begin(), t_e2e_.end(), 0.0);
+  std::vector<double> e2e(t_prep_.size());
+  for (std::size_t i = 0; i < e2e.size(); ++i) {
+    e2e[i] = t_prep_[i] + t_llm_[i] + t_det_[i];
+  }
+  const double total = std::accumulate(e2e.begin(), e2e.end(), 0.0);
   m.prep_median = Median(std::move(t_prep_));
   m.det_median = Median(std::move(t_det_));
   if (!std::isfinite(total)) return;  // Answers from files have no time.
   m.llm_median = Median(std::move(t_llm_));
-  m.e2e_p95 = NearestRank(t_e2e_, 95);
-  m.e2e_median = Median(std::move(t_e2e_));
+  m.e2e_p95 = NearestRank(e2e, 95);
+  const auto n = static_cast<double>(e2e.size());
+  m.e2e_median = Median(std::move(e2e));
   if (total > 0) m.fps = n / total;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +27,14 @@ struct Cluster {
   std::int64_t count = 0;
 };
 
+/// A case without a term, in a list of terms.
+inline constexpr double kNoTerm = std::numeric_limits<double>::quiet_NaN();
+
+/// The cluster of one case with this term, or kNoTerm.
+inline Cluster ClusterOf(double term) {
+  return std::isnan(term) ? Cluster{} : Cluster{term, 1};
+}
+
 /// How many resamples are drawn of so many clusters: 10,000; of more than
 /// 100,000 clusters 1,000 (docs/decisions.md, 19).
 constexpr int NumResamples(std::size_t clusters) {
@@ -36,6 +46,8 @@ inline constexpr std::uint64_t kBootstrapSeed = 20'260'101;
 /// over clusters (Efron 1979). Deterministic. Resamples without a term are left
 /// out. Takes all cores. Pre: at least one count > 0.
 Estimate BootstrapMean(std::span<const Cluster> clusters);
+/// The same of clusters that are single cases; kNoTerm where one has none.
+Estimate BootstrapCaseMean(std::span<const double> terms);
 
 /// Exact two-sided McNemar test (McNemar 1947): the chance, with a fair coin,
 /// of a split at least as uneven as b to c.

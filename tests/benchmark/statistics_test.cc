@@ -83,6 +83,21 @@ TEST(Bootstrap, OnSeveralCoresDrawsTheSameSeriesAsOnOne) {
                    means[9749] + 0.025 * (means[9750] - means[9749]));
 }
 
+TEST(Bootstrap, TermsOfSingleCasesAreClustersOfOne) {
+  std::vector<Cluster> clusters;
+  std::vector<double> terms;
+  for (int i = 0; i < 50; ++i) {
+    const bool counts = i % 3 != 0;
+    clusters.push_back(counts ? Cluster{0.01 * i * i, 1} : Cluster{});
+    terms.push_back(counts ? 0.01 * i * i : kNoTerm);
+  }
+  const Estimate of_clusters = BootstrapMean(clusters);
+  const Estimate of_terms = BootstrapCaseMean(terms);
+  EXPECT_EQ(of_terms.value, of_clusters.value);
+  EXPECT_EQ(of_terms.low, of_clusters.low);
+  EXPECT_EQ(of_terms.high, of_clusters.high);
+}
+
 TEST(Bootstrap, OfVeryManyClustersDrawsFewerResamples) {
   EXPECT_EQ(NumResamples(1), 10'000);
   EXPECT_EQ(NumResamples(100'000), 10'000);

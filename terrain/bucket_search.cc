@@ -54,29 +54,20 @@ constexpr StepSets kNaturalSteps = [] {
 }  // namespace
 
 template <typename Keys>
-void BucketSearch<Keys>::Prepare(std::size_t num_cells) {
-  ++search_;
-  if (labels_.size() < num_cells || search_ == 0) {
-    labels_.assign(num_cells, Label{Key{}, 0});
-    search_ = 1;
-  }
-}
-
-template <typename Keys>
 struct BucketSearch<Keys>::Task {
   const Keys& keys;
   const GridSteps grid;
   const OctileBound<Keys> to_goal;
   const Cell goal;
-  Key bound;  // Falls to the key of the best path to the goal.
   const bool bounded_by_keys;
+  Key bound;  // Falls to the key of the best path to the goal.
   SearchAttempt attempt;
 };
 
 template <typename Keys>
 void BucketSearch<Keys>::Push(std::size_t index, Key total,
                               const Entry& entry) {
-  labels_[index] = Label{entry.key, search_};
+  labels_.Set(index, entry.key);
   queue_.Push(total, entry);
 }
 
@@ -96,7 +87,7 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
     }
     const Key key = entry.key + (d % 2 == 0 ? task.keys.Straight(code)
                                             : task.keys.Diagonal(code));
-    if (key >= KeyOf(next)) {
+    if (key >= labels_.At(next)) {
       continue;
     }
     const Cell cell{entry.x() + kSteps[d].x, entry.y() + kSteps[d].y};
@@ -106,6 +97,9 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
       continue;
     }
     Push(next, total, Entry(key, cell.x, cell.y, d));
+    // What its expansion will ask for in other rows.
+    labels_.Prefetch(task.grid.Neighbour(next, 2));
+    labels_.Prefetch(task.grid.Neighbour(next, 6));
     if (cell == task.goal) {
       task.attempt.found = true;
       task.bound = key;
@@ -116,13 +110,13 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
 template <typename Keys>
 SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
                                       Cell start, Cell goal, Key bound) {
-  Prepare(map.cost_grid().size());
-  Task task{keys, GridSteps(map), OctileBound<Keys>(keys, goal),
-            goal, bound,          bound == Keys::kLimit,
+  const Key origin = labels_.Begin(map.cost_grid().size());
+  Task task{keys, GridSteps(map),        OctileBound<Keys>(keys, goal),
+            goal, bound == Keys::kLimit, origin + bound,
             {}};
   SearchAttempt& attempt = task.attempt;
-  const Key least = task.to_goal(start.x, start.y);
-  if (least >= bound) {
+  const Key least = origin + task.to_goal(start.x, start.y);
+  if (least >= task.bound) {
     attempt.beyond_keys = task.bounded_by_keys;
     return attempt;
   }
@@ -130,12 +124,12 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   // narrow enough that few cells are expanded too early.
   queue_.Reset(least, keys.min_straight() / 4, 2 * keys.max_diagonal());
   Push(map.cost_grid().Index(start), least,
-       Entry(Key{}, start.x, start.y, kNoArrival));
+       Entry(origin, start.x, start.y, kNoArrival));
   while (!queue_.empty() && queue_.floor() < task.bound) {
     const Entry entry = queue_.Pop();
     const Cell cell{entry.x(), entry.y()};
     const std::size_t index = map.cost_grid().Index(cell);
-    const bool improved_since = labels_[index].key != entry.key;
+    const bool improved_since = labels_.At(index) != entry.key;
     const bool useless =
         attempt.found && entry.key + task.to_goal(cell.x, cell.y) >= task.bound;
     if (!improved_since && !useless) {
@@ -145,13 +139,14 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   if (attempt.found) {
     attempt.beyond_keys = false;
     attempt.cells = ExtractPath(map, keys, start, goal, [this](std::size_t i) {
-      return KeyOf(i);
+      return labels_.At(i);
     });
   }
   return attempt;
 }
 
-template class BucketSearch<NarrowKeys>;
+static_assert(WideKeys::kNone >> SearchLabels<WideKeys::Key>::kKeyBits == 0);
+
 template class BucketSearch<WideKeys>;
 template class BucketSearch<DoubleKeys>;
 

@@ -1,20 +1,19 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "terrain/bucket_queue.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
 #include "terrain/search_attempt.h"
 #include "terrain/search_keys.h"
+#include "terrain/search_labels.h"
 
 namespace terra {
 
 /// A* on all cells with a bucket queue and canonical pruning.
 ///
-/// Keeps its memory between searches; nothing is cleared, cells labelled by an
-/// earlier search are told by its number.
+/// Keeps its memory between searches (search_labels.h).
 /// Threads: one search at a time.
 /// Source: A*: Hart, Nilsson, Raphael 1968. Buckets: see BucketQueue. Pruning:
 ///         canonical orderings (Sturtevant, Rabin 2016; Harabor, Grastien 2011)
@@ -29,13 +28,9 @@ class BucketSearch {
   SearchAttempt Run(const TerrainMap& map, const Keys& keys, Cell start,
                     Cell goal, Key bound);
 
-  std::size_t bytes() const { return labels_.capacity() * sizeof(Label); }
+  std::size_t bytes() const { return labels_.bytes(); }
 
  private:
-  struct Label {
-    Key key;               // Of the best path found to the cell.
-    std::uint32_t search;  // The search that found it.
-  };
   // A label in the queue. Packed by hand, as compilers write bit-fields one by
   // one and then wait for what they wrote: 13 bits each for x and y, then the
   // step of arrival.
@@ -55,19 +50,13 @@ class BucketSearch {
 
   struct Task;
 
-  void Prepare(std::size_t num_cells);
   void Push(std::size_t index, Key total, const Entry& entry);
   void Expand(Task& task, const Entry& entry, std::size_t index);
-  Key KeyOf(std::size_t index) const {
-    return labels_[index].search == search_ ? labels_[index].key : Keys::kNone;
-  }
 
-  std::vector<Label> labels_;
-  std::uint32_t search_ = 0;
+  SearchLabels<Key> labels_;
   BucketQueue<Key, Entry> queue_;
 };
 
-extern template class BucketSearch<NarrowKeys>;
 extern template class BucketSearch<WideKeys>;
 extern template class BucketSearch<DoubleKeys>;
 

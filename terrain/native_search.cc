@@ -1,6 +1,7 @@
 #include "terrain/native_search.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "terrain/bucket_search.h"
@@ -17,7 +18,20 @@ struct Query {
   Cell start;
   Cell goal;
   const NativeSearchOptions& options;
+  double bound;  // Cost of a route that there is; or kImpassable.
 };
+
+// A caller who knows no route may still have one: the straight line, which
+// costs a microsecond to look at.
+double UpperBound(const TerrainMap& map, Cell start, Cell goal,
+                  const NativeSearchOptions& options) {
+  if (options.upper_bound != kImpassable ||
+      options.method != SearchMethod::kAutomatic) {
+    return options.upper_bound;
+  }
+  const RouteWalk line = WalkRoute(map, std::array{start, goal});
+  return line.feasible() ? line.cost : kImpassable;
+}
 
 // Whether keys hold the way across the map at the lowest cost, and have room
 // for what a search adds up before it compares: a key below the limit, a step
@@ -34,13 +48,13 @@ bool HoldMap(const TerrainMap& map) {
 }
 
 // Whether a search with these keys is worth starting. A known route's cost
-// settles it; without one narrow keys are tried, and wider ones where the
-// search has met paths beyond them.
+// settles it; without one they are tried, and wider ones where the search has
+// met paths beyond them.
 template <typename Keys>
 bool MayHoldResult(const Query& query) {
   return HoldMap<Keys>(query.map) &&
-         (query.options.upper_bound == kImpassable ||
-          Keys(query.map).KeyAbove(query.options.upper_bound) < Keys::kLimit);
+         (query.bound == kImpassable ||
+          Keys(query.map).KeyAbove(query.bound) < Keys::kLimit);
 }
 
 // Wide vectors sweep a map in less time than A* takes in all but the easiest
@@ -48,42 +62,38 @@ bool MayHoldResult(const Query& query) {
 // Vectors of four cells do where a known cost leaves out cells, unless it is so
 // near the empty map's cost that A* leaves out more (measured on generated
 // maps, docs/performance.md).
-bool PreferBuckets(const Query& query) {
+bool PreferSweep(const Query& query) {
+  if (query.options.method != SearchMethod::kAutomatic) {
+    return query.options.method == SearchMethod::kSweep;
+  }
   if (query.options.instructions != InstructionSet::kPortable) {
-    return false;
+    return true;
   }
   constexpr double kNear = 1.35;
   const double octile = OctileBound<DoubleKeys>(
       DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
-  return query.options.upper_bound == kImpassable ||
-         query.options.upper_bound <= kNear * octile;
+  return query.options.upper_bound != kImpassable &&
+         query.options.upper_bound > kNear * octile;
 }
 
 }  // namespace
 
 struct NativeSearcher::Workspace {
   SweepSearch sweep;
-  BucketSearch<NarrowKeys> narrow;
   BucketSearch<WideKeys> wide;
   BucketSearch<DoubleKeys> doubles;
 
-  SearchAttempt AttemptNarrow(const Query& query) {
-    const SearchMethod method = query.options.method;
-    if (method == SearchMethod::kBuckets ||
-        (method == SearchMethod::kAutomatic && PreferBuckets(query))) {
-      return Attempt(narrow, query);
-    }
+  SearchAttempt Sweep(const Query& query) {
     const NarrowKeys keys(query.map);
     return sweep.Run(query.map, keys, query.start, query.goal,
-                     keys.KeyAbove(query.options.upper_bound),
-                     query.options.instructions);
+                     keys.KeyAbove(query.bound), query.options.instructions);
   }
 
   template <typename Keys>
   static SearchAttempt Attempt(BucketSearch<Keys>& search, const Query& query) {
     const Keys keys(query.map);
     return search.Run(query.map, keys, query.start, query.goal,
-                      keys.KeyAbove(query.options.upper_bound));
+                      keys.KeyAbove(query.bound));
   }
 };
 
@@ -105,7 +115,8 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
     result.cells = {start};
     return result;
   }
-  const Query query{map, start, goal, options};
+  const Query query{map, start, goal, options,
+                    UpperBound(map, start, goal, options)};
   SearchAttempt last;
   last.beyond_keys = true;
   const auto attempt = [&](SearchAttempt next) {
@@ -113,8 +124,9 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
     result.passes += next.passes;
     last = std::move(next);
   };
-  if (options.keys == KeyWidth::kNarrow && MayHoldResult<NarrowKeys>(query)) {
-    attempt(workspace_->AttemptNarrow(query));
+  if (options.keys == KeyWidth::kNarrow && PreferSweep(query) &&
+      MayHoldResult<NarrowKeys>(query)) {
+    attempt(workspace_->Sweep(query));
   }
   if (last.beyond_keys && options.keys != KeyWidth::kDouble &&
       MayHoldResult<WideKeys>(query)) {
@@ -137,8 +149,8 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
 }
 
 std::size_t NativeSearcher::bytes() const {
-  return workspace_->sweep.bytes() + workspace_->narrow.bytes() +
-         workspace_->wide.bytes() + workspace_->doubles.bytes();
+  return workspace_->sweep.bytes() + workspace_->wide.bytes() +
+         workspace_->doubles.bytes();
 }
 
 SearchResult NativeSearch(const TerrainMap& map, Cell start, Cell goal,

@@ -16,8 +16,9 @@ enum class SearchMethod {
                ///< keys hold the result; else A*.
 };
 
-/// The smallest keys (search_keys.h) that a search may add up; it takes wider
-/// ones by itself where these do not hold the result.
+/// The smallest keys (search_keys.h) that a search may add up, narrow ones in
+/// sweeps alone; it takes wider ones by itself where these do not hold the
+/// result.
 enum class KeyWidth { kNarrow, kWide, kDouble };
 
 /// What a native search may be told.

@@ -28,17 +28,17 @@ inline constexpr double kAboveRounding = 1 + 1e-9;
 ///   an integer difference of keys of 1 or more has the sign of the costs'
 ///   difference; and a difference of 0 needs db = 0, p and q having no common
 ///   divisor, and then the costs are equal.
-/// Keys end earlier where sums of two would not fit the signed type of the same
-/// size, which vectors of keys have.
+/// Keys end earlier where sums of two would not fit a signed integer of kBits
+/// bits: vectors of keys have those of 32, labels of A* those of 56
+/// (search_labels.h).
 /// Source: continued fraction of sqrt 2 (Pell numbers).
-template <typename KeyType, KeyType kQ, KeyType kP>
+template <typename KeyType, int kBits, KeyType kQ, KeyType kP>
 class IntegerKeys {
  public:
   using Key = KeyType;
-  static constexpr Key kLimit =
-      std::min(kQ * kP, std::numeric_limits<Key>::max() / 4);
+  static constexpr Key kLimit = std::min(kQ * kP, (Key{1} << (kBits - 2)) - 1);
   /// Key of what no path has reached: above every sum.
-  static constexpr Key kNone = std::numeric_limits<Key>::max() / 2;
+  static constexpr Key kNone = (Key{1} << (kBits - 1)) - 1;
 
   explicit IntegerKeys(const TerrainMap& map)
       : scale_(map.costs().scale),
@@ -68,11 +68,11 @@ class IntegerKeys {
   Key max_units_;
 };
 
-/// Half the memory and twice the cells per vector; holds routes of up to 32,089
-/// units (at tenths, cost 3,208).
-using NarrowKeys = IntegerKeys<std::uint32_t, 33'461, 47'321>;
-/// Holds routes of up to 1.8e9 units.
-using WideKeys = IntegerKeys<std::uint64_t, 1'311'738'121, 1'855'077'841>;
+/// For sweeps, where half the memory is twice the cells per vector; hold routes
+/// of up to 32,089 units (at tenths, cost 3,208).
+using NarrowKeys = IntegerKeys<std::uint32_t, 32, 33'461, 47'321>;
+/// For A*; hold routes of up to 131,836,322 units (at tenths, cost 13 million).
+using WideKeys = IntegerKeys<std::uint64_t, 56, 93'222'358, 131'836'323>;
 
 /// Costs as they are, for legends without exact units and for routes beyond all
 /// integer keys. Sums are rounded, so ties may break by rounding.

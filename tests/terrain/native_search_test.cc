@@ -1,3 +1,5 @@
+#include "terrain/native_search.h"
+
 #include <utility>
 #include <vector>
 
@@ -6,6 +8,7 @@
 #include "terrain/builtin_legends.h"
 #include "terrain/legend.h"
 #include "terrain/map.h"
+#include "terrain/reference_search.h"
 #include "tests/support/random_map.h"
 #include "tests/terrain/search_agreement.h"
 
@@ -68,8 +71,8 @@ void ExpectAgreementOnRandomMaps(std::uint64_t seed, int count, MapSizes sizes,
   }
 }
 
-// AllWaysAgree forces them one by one. (A few of the maps have no passable cell,
-// or start and goal in one place.)
+// AllWaysAgree forces them one by one. (A few of the maps have no passable
+// cell, or start and goal in one place.)
 TEST(NativeSearchTest, EachWayFindsTheReferenceCostOn12000SmallMaps) {
   ExpectAgreementOnRandomMaps(1, 12'500, {24, 24});
 }
@@ -148,6 +151,25 @@ TEST(NativeSearchTest, FindsTheOnlyWayWhereItsLastStepLeavesNarrowKeys) {
   ids << 0, 1, 1, 1;
   const TerrainMap map = TerrainMap::Create(ids, legend).value();
   EXPECT_TRUE(AllWaysAgree(map, {0, 0}, {3, 0}));
+}
+
+// Labels are cleared after every 255 searches only.
+TEST(NativeSearchTest, StaysExactOverManySearchesInTheSameMemory) {
+  Random random(9);
+  const TerrainMap map = RandomMap(random, 40, 30, RandomMapKind::kRectangles);
+  NativeSearcher kept;
+  int found = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Cell start{random.Int(0, 39), random.Int(0, 29)};
+    const Cell goal{random.Int(0, 39), random.Int(0, 29)};
+    const SearchResult got =
+        kept.Search(map, start, goal, {.method = SearchMethod::kBuckets});
+    const SearchResult want = ReferenceSearch(map, start, goal);
+    ASSERT_EQ(got.status, want.status) << i;
+    ASSERT_EQ(got.cost, want.cost) << i;
+    found += got.found() ? 1 : 0;
+  }
+  EXPECT_GT(found, 100);
 }
 
 }  // namespace

@@ -99,10 +99,10 @@ TEST(NativeSearchWorstCaseTest, AKnownCostWithinNarrowKeysNeedsNoOthers) {
   NativeSearcher searcher;
   const SearchResult narrow =
       searcher.Search(map, c.start, c.goal,
-                      {.upper_bound = cost, .method = SearchMethod::kBuckets});
+                      {.upper_bound = cost, .method = SearchMethod::kSweep});
   EXPECT_EQ(narrow.cost, cost);
-  // One label of 8 bytes a cell, none of the 16 that wider keys take.
-  EXPECT_LT(narrow.bytes, std::size_t{100 * 100 * 16});
+  // Keys of 4 bytes a cell, none of the labels of 8 more that A* takes.
+  EXPECT_LT(narrow.bytes, std::size_t{100 * 100 * 8});
 }
 
 // A* looks at eight neighbours of each cell it expands; a sweep relaxes a cell
@@ -133,6 +133,17 @@ TEST(NativeSearchLargeMapTest, AgreesOnSerpentinesOf4000Cells) {
     EXPECT_EQ(NativeSearch(map, c.start, c.goal, {.upper_bound = cost}).cost,
               cost);
   }
+}
+
+// Beyond all integer keys: a billion units.
+TEST(NativeSearchLargeMapTest, AgreesOnASerpentineOf4000CellsInTenths) {
+  const WorstCase c = RowSerpentine(4000, kDearest);
+  const TerrainMap map = MapOf(c, TenthsLegend());
+  const double cost = ReferenceSearch(map, c.start, c.goal).cost;
+  ASSERT_GT(cost * map.costs().scale, 131'836'323);
+  EXPECT_EQ(NativeSearch(map, c.start, c.goal).cost, cost);
+  EXPECT_EQ(NativeSearch(map, c.start, c.goal, {.upper_bound = cost}).cost,
+            cost);
 }
 
 }  // namespace

@@ -55,9 +55,7 @@ std::string Fault(const TerrainMap& map, const SearchWay& way,
 
 std::vector<SearchWay> AllSearchWays() {
   std::vector<SearchWay> ways = {
-      {"buckets, narrow", {.method = SearchMethod::kBuckets}},
-      {"buckets, wide",
-       {.method = SearchMethod::kBuckets, .keys = KeyWidth::kWide}},
+      {"buckets, integers", {.method = SearchMethod::kBuckets}},
       {"buckets, doubles",
        {.method = SearchMethod::kBuckets, .keys = KeyWidth::kDouble}}};
   for (const auto& [set, name] :

@@ -66,6 +66,9 @@ function(terra_test folder)
     RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPS} terra_flags
                         GTest::gmock GTest::gtest GTest::gtest_main)
+  if(TARGET terra_test_headers)
+    target_precompile_headers(${ARG_NAME} REUSE_FROM terra_test_headers)
+  endif()
   gtest_discover_tests(${ARG_NAME} TEST_PREFIX "${prefix}"
     DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")

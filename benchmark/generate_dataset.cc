@@ -59,7 +59,7 @@ Result<WrittenCase> WriteCase(Subset subset, int index,
                      generated.rejections};
 }
 
-Error CannotWrite(const fs::path& path) {
+Error TableNotWritten(const fs::path& path) {
   return {ErrorCode::kUnavailable, path.string() + ": cannot be written"};
 }
 
@@ -85,8 +85,8 @@ class CaseTables {
             std::string(SubsetName(c.subset))});
     digest_.Add(DigestLine(id, c.map_id, c.start, c.goal));
     map_sums_ << c.map_sha256 << "  " << map << "\n";
-    if (!cases_) return CannotWrite(cases_path_);
-    return map_sums_ ? Status(Done{}) : CannotWrite(sums_path_);
+    if (!cases_) return TableNotWritten(cases_path_);
+    return map_sums_ ? Status(Done{}) : TableNotWritten(sums_path_);
   }
 
   // The dataset's digest; once, when all cases were added.
@@ -104,7 +104,7 @@ class CaseTables {
     fs::remove(MapSumsPath(), failed);
     if (!failed) fs::rename(Unfinished(sums_path_), sums_path_, failed);
     return map_sums_ && sums && !failed ? Status(Done{})
-                                        : CannotWrite(sums_path_);
+                                        : TableNotWritten(sums_path_);
   }
 
   // Names cases.csv.
@@ -112,7 +112,7 @@ class CaseTables {
     cases_.close();
     std::error_code failed;
     fs::rename(Unfinished(cases_path_), cases_path_, failed);
-    return cases_ && !failed ? Status(Done{}) : CannotWrite(cases_path_);
+    return cases_ && !failed ? Status(Done{}) : TableNotWritten(cases_path_);
   }
 
  private:

@@ -43,7 +43,7 @@ std::string RowsOf(const MeasuredCase& c, const std::vector<int>& strides) {
   return rows;
 }
 
-Error CannotWrite(const std::string& path) {
+Error GapsNotWritten(const std::string& path) {
   return {ErrorCode::kUnavailable, path + ": cannot be written"};
 }
 
@@ -128,14 +128,14 @@ Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
         progress.Advance();
         summaries.Add(c.group, c.gap);
         file << RowsOf(c, options.strides);
-        return file ? Status(Done{}) : CannotWrite(path);
+        return file ? Status(Done{}) : GapsNotWritten(path);
       });
   const Status measured = work.Run(options.jobs);
   if (!measured.ok()) return measured.error();
   file.close();
   std::error_code failed;
   if (file) fs::rename(unfinished, path, failed);
-  if (!file || failed) return CannotWrite(path);
+  if (!file || failed) return GapsNotWritten(path);
   return summaries.Rows();
 }
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
+#include <fstream>
 #include <optional>
 #include <utility>
 
@@ -11,7 +11,7 @@
 
 #include "advisor/encoding.h"
 #include "benchmark/dataset_card.h"
-#include "benchmark/parallel.h"
+#include "benchmark/in_order.h"
 #include "benchmark/progress.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
@@ -28,17 +28,14 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxMapBytes = std::size_t{1} << 26;
 
-// What is kept of a case once its map is on disk.
+// What is kept of a case once its map is on disk, until its lines are written.
 struct WrittenCase {
+  Subset subset;
+  int index = 0;
   std::int64_t map_id = 0;
   Cell start;
   Cell goal;
-  std::array<char, 64> map_sha256{};
-};
-
-struct WrittenSubset {
-  Subset subset;
-  std::vector<WrittenCase> cases;
+  std::string map_sha256;
   Rejections rejections;
 };
 
@@ -46,68 +43,124 @@ std::string MapPath(Subset subset, int index) {
   return "maps/" + CaseId(subset, index) + ".png";
 }
 
-Result<WrittenCase> WriteCase(const GeneratedCase& generated,
+Result<WrittenCase> WriteCase(Subset subset, int index,
+                              const GeneratedCase& generated,
                               const std::string& path) {
   const Status written = WriteIdPng(generated.map, path);
   if (!written.ok()) return written.error();
   const Result<std::string> bytes = ReadWholeFile(path, kMaxMapBytes);
   if (!bytes.ok()) return bytes.error();
-  WrittenCase result{MapId(generated.map), generated.start, generated.goal, {}};
-  advisor::Sha256Hex(*bytes).copy(result.map_sha256.data(),
-                                  result.map_sha256.size());
-  return result;
+  return WrittenCase{subset,
+                     index,
+                     MapId(generated.map),
+                     generated.start,
+                     generated.goal,
+                     advisor::Sha256Hex(*bytes),
+                     generated.rejections};
 }
 
-Result<WrittenSubset> WriteSubset(Subset subset, const GenerateOptions& options,
-                                  const fs::path& folder) {
-  WrittenSubset result{subset, {}, {}};
-  result.cases.resize(static_cast<std::size_t>(options.count));
-  const MapParameters parameters = CalibratedParameters(subset);
-  std::optional<Error> failure;
-  std::mutex mutex;
-  Progress progress("generate " + std::string(SubsetName(subset)),
-                    options.count);
-  ParallelFor(options.count, options.jobs, [&](std::int64_t i) {
-    const auto index = static_cast<int>(i);
-    const GeneratedCase generated =
-        GenerateCase(subset, options.seed, index, parameters);
-    const Result<WrittenCase> written =
-        WriteCase(generated, (folder / MapPath(subset, index)).string());
-    progress.Advance();
-    const std::scoped_lock lock(mutex);
-    if (!written.ok()) {
-      if (!failure) failure = written.error();
-      return;
-    }
-    result.cases[static_cast<std::size_t>(i)] = *written;
-    result.rejections += generated.rejections;
-  });
-  if (failure) return *failure;
-  return result;
+Error TableNotWritten(const fs::path& path) {
+  return {ErrorCode::kUnavailable, path.string() + ": cannot be written"};
 }
 
-// cases.csv as text, and the dataset's digest.
-struct CaseTable {
-  std::string csv;
-  std::string digest;
+// The tables with a line for each case. They grow on disk, not in memory, and
+// get their names when they are whole.
+class CaseTables {
+ public:
+  explicit CaseTables(const fs::path& folder)
+      : cases_path_(folder / "cases.csv"),
+        sums_path_(folder / "SHA256SUMS"),
+        cases_(Unfinished(cases_path_), std::ios::binary),
+        map_sums_(MapSumsPath(), std::ios::binary) {
+    AddRow(
+        {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"});
+  }
+
+  // In order of the cases.
+  Status Add(const WrittenCase& c) {
+    const std::string id = CaseId(c.subset, c.index);
+    const std::string map = MapPath(c.subset, c.index);
+    AddRow({id, map, std::to_string(c.start.x), std::to_string(c.start.y),
+            std::to_string(c.goal.x), std::to_string(c.goal.y),
+            std::string(SubsetName(c.subset))});
+    digest_.Add(DigestLine(id, c.map_id, c.start, c.goal));
+    map_sums_ << c.map_sha256 << "  " << map << "\n";
+    if (!cases_) return TableNotWritten(cases_path_);
+    return map_sums_ ? Status(Done{}) : TableNotWritten(sums_path_);
+  }
+
+  // The dataset's digest; once, when all cases were added.
+  std::string Digest() { return digest_.Hex(); }
+
+  // Writes SHA256SUMS, in the form that `sha256sum -c` reads: first of the
+  // other tables, whose lines are given, then of cases.csv and the maps.
+  Status FinishSums(std::string lines) {
+    map_sums_.close();
+    lines += cases_sum_.Hex() + "  cases.csv\n";
+    std::ofstream sums(Unfinished(sums_path_), std::ios::binary);
+    sums << lines << std::ifstream(MapSumsPath(), std::ios::binary).rdbuf();
+    sums.close();
+    std::error_code failed;
+    fs::remove(MapSumsPath(), failed);
+    if (!failed) fs::rename(Unfinished(sums_path_), sums_path_, failed);
+    return map_sums_ && sums && !failed ? Status(Done{})
+                                        : TableNotWritten(sums_path_);
+  }
+
+  // Names cases.csv.
+  Status FinishCases() {
+    cases_.close();
+    std::error_code failed;
+    fs::rename(Unfinished(cases_path_), cases_path_, failed);
+    return cases_ && !failed ? Status(Done{}) : TableNotWritten(cases_path_);
+  }
+
+ private:
+  static fs::path Unfinished(const fs::path& path) {
+    return path.string() + ".part";
+  }
+  fs::path MapSumsPath() const { return sums_path_.string() + ".maps.part"; }
+
+  void AddRow(const std::vector<std::string>& fields) {
+    const std::string line = CsvLine(fields);
+    cases_sum_.Add(line);
+    cases_ << line;
+  }
+
+  const fs::path cases_path_;
+  const fs::path sums_path_;
+  std::ofstream cases_;
+  std::ofstream map_sums_;
+  advisor::Sha256 cases_sum_;
+  advisor::Sha256 digest_;
 };
 
-CaseTable MakeCaseTable(const std::vector<WrittenSubset>& subsets) {
-  std::string csv = CsvLine(
-      {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"});
-  std::string lines;
-  for (const WrittenSubset& subset : subsets) {
-    for (int i = 0; i < static_cast<int>(subset.cases.size()); ++i) {
-      const WrittenCase& c = subset.cases[static_cast<std::size_t>(i)];
-      const std::string id = CaseId(subset.subset, i);
-      csv += CsvLine({id, MapPath(subset.subset, i), std::to_string(c.start.x),
-                      std::to_string(c.start.y), std::to_string(c.goal.x),
-                      std::to_string(c.goal.y),
-                      std::string(SubsetName(subset.subset))});
-      lines += DigestLine(id, c.map_id, c.start, c.goal);
-    }
-  }
-  return {std::move(csv), advisor::Sha256Hex(lines)};
+// Returns what was rejected on the way.
+Result<Rejections> WriteSubset(Subset subset, const GenerateOptions& options,
+                               const fs::path& folder, CaseTables& tables) {
+  const MapParameters parameters = CalibratedParameters(subset);
+  Rejections rejections;
+  int next = 0;
+  Progress progress("generate " + std::string(SubsetName(subset)),
+                    options.count);
+  InOrder<int, WrittenCase> work(
+      [&]() -> Result<std::optional<int>> {
+        if (next == options.count) return std::optional<int>();
+        return std::optional(next++);
+      },
+      [&](const int& index) {
+        return WriteCase(subset, index,
+                         GenerateCase(subset, options.seed, index, parameters),
+                         (folder / MapPath(subset, index)).string());
+      },
+      [&](const WrittenCase& c) {
+        progress.Advance();
+        rejections += c.rejections;
+        return tables.Add(c);
+      });
+  const Status done = work.Run(options.jobs);
+  if (!done.ok()) return done.error();
+  return rejections;
 }
 
 ordered_json ToJson(IntRange range) {
@@ -148,38 +201,22 @@ ordered_json ToJson(const Rejections& r) {
 }
 
 std::string DatasetJson(const GenerateOptions& options,
-                        const std::vector<WrittenSubset>& subsets,
+                        const std::vector<Rejections>& rejections,
                         const std::string& digest) {
   ordered_json json = {{"name", options.name},
                        {"version", options.version},
                        {"generator_version", kGeneratorVersion},
                        {"seed", options.seed},
                        {"legend", "multiterrapath"}};
-  for (const WrittenSubset& subset : subsets) {
-    json["subsets"][std::string(SubsetName(subset.subset))] = {
-        {"count", subset.cases.size()},
-        {"parameters", ToJson(CalibratedParameters(subset.subset))},
-        {"rejections", ToJson(subset.rejections)}};
+  for (std::size_t i = 0; i < options.subsets.size(); ++i) {
+    const Subset subset = options.subsets[i];
+    json["subsets"][std::string(SubsetName(subset))] = {
+        {"count", options.count},
+        {"parameters", ToJson(CalibratedParameters(subset))},
+        {"rejections", ToJson(rejections[i])}};
   }
   json["digest"] = digest;
   return json.dump(2) + "\n";
-}
-
-// SHA256SUMS in the form that `sha256sum -c` reads.
-std::string Sums(const std::vector<std::pair<std::string, std::string>>& files,
-                 const std::vector<WrittenSubset>& subsets) {
-  std::string text;
-  for (const auto& [name, content] : files) {
-    text += advisor::Sha256Hex(content) + "  " + name + "\n";
-  }
-  for (const WrittenSubset& subset : subsets) {
-    for (int i = 0; i < static_cast<int>(subset.cases.size()); ++i) {
-      const auto& sum = subset.cases[static_cast<std::size_t>(i)].map_sha256;
-      text += std::string(sum.data(), sum.size()) + "  " +
-              MapPath(subset.subset, i) + "\n";
-    }
-  }
-  return text;
 }
 
 Status PrepareFolder(const fs::path& folder) {
@@ -198,28 +235,26 @@ Status PrepareFolder(const fs::path& folder) {
   return Done{};
 }
 
-Status WriteTables(const GenerateOptions& options,
-                   const std::vector<WrittenSubset>& subsets,
-                   const CaseTable& table, const fs::path& folder) {
+// Writes the tables that do not grow with the cases. Returns their lines of
+// SHA256SUMS.
+Result<std::string> WriteSmallTables(const std::string& json,
+                                     const std::string& card,
+                                     const fs::path& folder) {
   const std::string legend_path = (folder / "legend.csv").string();
   const Status legend_written =
       WriteLegend(MultiTerraPathLegend(), legend_path);
   if (!legend_written.ok()) return legend_written.error();
   const Result<std::string> legend = ReadWholeFile(legend_path, kMaxMapBytes);
   if (!legend.ok()) return legend.error();
-  const std::vector<std::pair<std::string, std::string>> files = {
-      {"dataset.json", DatasetJson(options, subsets, table.digest)},
-      {"legend.csv", *legend},
-      {"README.md", DatasetCard(options)},
-      {"cases.csv", table.csv}};
-  const std::string sums = Sums(files, subsets);
-  const Status summed = WriteWholeFile((folder / "SHA256SUMS").string(), sums);
-  if (!summed.ok()) return summed.error();
+  const std::pair<const char*, std::string> files[] = {
+      {"dataset.json", json}, {"legend.csv", *legend}, {"README.md", card}};
+  std::string sums;
   for (const auto& [name, content] : files) {
     const Status written = WriteWholeFile((folder / name).string(), content);
     if (!written.ok()) return written.error();
+    sums += advisor::Sha256Hex(content) + "  " + name + "\n";
   }
-  return Done{};
+  return sums;
 }
 
 }  // namespace
@@ -241,16 +276,22 @@ Result<std::string> GenerateDataset(const GenerateOptions& options,
                                     const std::string& folder) {
   const Status prepared = PrepareFolder(folder);
   if (!prepared.ok()) return prepared.error();
-  std::vector<WrittenSubset> subsets;
+  CaseTables tables(folder);
+  std::vector<Rejections> rejections;
   for (const Subset subset : options.subsets) {
-    Result<WrittenSubset> written = WriteSubset(subset, options, folder);
-    if (!written.ok()) return written.error();
-    subsets.push_back(*std::move(written));
+    const auto rejected = WriteSubset(subset, options, folder, tables);
+    if (!rejected.ok()) return rejected.error();
+    rejections.push_back(*rejected);
   }
-  CaseTable table = MakeCaseTable(subsets);
-  const Status written = WriteTables(options, subsets, table, folder);
-  if (!written.ok()) return written.error();
-  return std::move(table.digest);
+  std::string digest = tables.Digest();
+  const auto sums = WriteSmallTables(DatasetJson(options, rejections, digest),
+                                     DatasetCard(options), folder);
+  if (!sums.ok()) return sums.error();
+  const Status summed = tables.FinishSums(*sums);
+  if (!summed.ok()) return summed.error();
+  const Status finished = tables.FinishCases();
+  if (!finished.ok()) return finished.error();
+  return digest;
 }
 
 }  // namespace terra::benchmark

@@ -7,7 +7,7 @@
 
 #include "benchmark/generate_dataset.h"
 #include "benchmark/map_generator.h"
-#include "terrain/files/dataset.h"
+#include "terrain/files/case_reader.h"
 #include "terrain/require.h"
 
 namespace terra::benchmark {
@@ -53,11 +53,16 @@ Result<ReferencePool> BuildGeneratedPool(std::uint64_t seed, int count) {
 
 Result<ReferencePool> BuildDatasetPool(const std::string& folder, int count) {
   TERRA_REQUIRE(count >= 1);
-  const auto dataset = ReadDataset(folder);
+  const auto dataset = OpenDataset(folder);
   if (!dataset) return dataset.error();
+  auto cases = CaseReader::Open(folder);
+  if (!cases) return cases.error();
   std::vector<ReferencePair> pairs;
-  for (const DatasetCase& one : dataset->cases) {
-    if (pairs.size() == static_cast<std::size_t>(count)) break;
+  while (pairs.size() < static_cast<std::size_t>(count)) {
+    const auto next = cases->Next();
+    if (!next) return next.error();
+    if (!next->has_value()) break;
+    const DatasetCase& one = **next;
     const auto map = ReadCaseMap(*dataset, one);
     if (!map) return map.error();
     const auto sequence = one.extra.find("sequence");

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "terrain/cell.h"
+#include "benchmark/rugd_ends.h"
 #include "terrain/files/dataset.h"
-#include "terrain/map.h"
 #include "terrain/result.h"
 
 namespace terra::benchmark {
@@ -24,11 +22,6 @@ struct RugdOptions {
   int jobs = 0;  ///< 0 = all cores.
 };
 
-/// How ends are chosen (PROTOCOL, Cases; the paper leaves it open).
-inline constexpr int kRugdDraws = 200;
-inline constexpr int kRugdEndDistance = 100;  ///< Cells, Euclidean.
-inline constexpr int kRugdStride = 50;  ///< A lattice route must exist at it.
-
 /// A frame's name in parts: "trail-10_00001" is frame 00001 of sequence
 /// trail-10 in group trail.
 struct RugdFrame {
@@ -44,21 +37,6 @@ std::string RugdFramesOf(const DatasetFolder& dataset);
 /// Returns the masks below a folder in order of their names; none for other
 /// files. A name that stands twice is an error.
 Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder);
-
-struct RugdEnds {
-  Cell start;
-  Cell goal;
-};
-
-/// Draws start and goal from hash(seed, frame name) alone: both in one
-/// 8-connected passable component, kRugdEndDistance apart, joined by a lattice
-/// route. Absent, with a reason, when kRugdDraws tries find none.
-struct RugdDraw {
-  std::optional<RugdEnds> ends;
-  std::string reason;
-};
-RugdDraw DrawRugdEnds(const TerrainMap& map, std::uint64_t seed,
-                      const std::string& frame_name);
 
 /// What came of it, per group.
 struct RugdCount {

@@ -12,6 +12,7 @@
 #include "benchmark/batch.h"
 #include "cli/bench_commands.h"
 #include "cli/case_selection.h"
+#include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 
@@ -38,6 +39,7 @@ struct ImportArguments {
 int RunExport(ExportArguments& arguments) {
   const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
+  NoteDefaultLegend(*dataset);
   auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);

@@ -7,6 +7,7 @@
 
 #include "benchmark/gap.h"
 #include "cli/bench_commands.h"
+#include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 
@@ -36,6 +37,7 @@ void PrintSummary(const std::vector<benchmark::GapSummary>& summaries) {
 int RunGap(const GapArguments& arguments) {
   const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
+  NoteDefaultLegend(*dataset);
   const auto summaries =
       benchmark::MeasureGaps(*dataset, arguments.options, arguments.out);
   if (!summaries.ok()) return Fail(summaries.error());

@@ -17,6 +17,7 @@
 #include "bus/build_id.h"
 #include "cli/bench_commands.h"
 #include "cli/case_selection.h"
+#include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 #include "terrain/files/csv.h"
@@ -106,6 +107,7 @@ Result<std::vector<MethodRun>> ChooseMethods(const RunArguments& arguments) {
 int RunRun(RunArguments& arguments, const std::string& command_line) {
   const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
   if (!dataset.ok()) return Fail(dataset.error());
+  NoteDefaultLegend(*dataset);
   auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
 #include "terrain/files/csv.h"
@@ -95,6 +96,7 @@ Status VerifyDataset(const VerifyDatasetArguments& arguments,
                      const CostModel& model) {
   const Result<Dataset> dataset = ReadDataset(arguments.dataset);
   if (!dataset.ok()) return dataset.error();
+  NoteDefaultLegend(*dataset);
   const Result<CsvTable> routes =
       ReadCsv(arguments.routes, {"case_id", "k", "route"});
   if (!routes.ok()) return routes.error();

@@ -16,9 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 7> kCaseColumns = {
-    "case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"};
-
 bool IsExtraColumn(const std::string& column) {
   return std::find(kCaseColumns.begin(), kCaseColumns.end(), column) ==
          kCaseColumns.end();

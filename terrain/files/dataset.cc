@@ -1,7 +1,6 @@
 #include "terrain/files/dataset.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -20,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 7> kCaseColumns = {
-    "case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"};
 constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 20;
 
 // Fills name, version, digest and json from dataset.json, where there is one.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "terrain/cell.h"
@@ -12,6 +14,10 @@
 #include "terrain/result.h"
 
 namespace terra {
+
+/// The columns of cases.csv that every dataset has, and the group.
+inline constexpr std::array<std::string_view, 7> kCaseColumns = {
+    "case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"};
 
 /// One start and goal on one map of a dataset.
 struct DatasetCase {

@@ -172,6 +172,24 @@ TEST_F(TerraCommand, DatasetRoutesWithAnUnknownCaseNameTheLine) {
   EXPECT_THAT(run.output, HasSubstr("routes.csv:3"));
 }
 
+TEST_F(TerraCommand, MapsReadUnderTheDefaultLegendAreNamedOnce) {
+  const std::string data = folder_.Path("data");
+  folder_.Write("data/wall.map", "type octile\nheight 1\nwidth 2\nmap\n..\n");
+  folder_.Write("data/cases.csv",
+                "case_id,map,start_x,start_y,goal_x,goal_y\n"
+                "a,wall.map,0,0,1,0\nb,wall.map,0,0,1,0\n");
+  const std::vector<std::string> gap = {
+      "bench", "gap", "--dataset", data, "--out", folder_.Path("gap.csv")};
+  const std::string notice =
+      "no legend.csv: wall.map is read under the legend multiterrapath";
+  const std::string output = Terra(gap).output;
+  const std::size_t at = output.find(notice);
+  ASSERT_NE(at, std::string::npos) << output;
+  EXPECT_EQ(output.find(notice, at + 1), std::string::npos) << output;
+  folder_.Write("data/legend.csv", "id,name,cost,color\n0,ground,1,#ffffff\n");
+  EXPECT_THAT(Terra(gap).output, Not(HasSubstr(notice)));
+}
+
 TEST_F(TerraCommand, DatasetRoutesAreCheckedUnderTheCostModel) {
   folder_.Write("cases.csv",
                 "case_id,map,start_x,start_y,goal_x,goal_y\n"

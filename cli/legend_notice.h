@@ -1,0 +1,12 @@
+#pragma once
+
+#include "terrain/files/dataset.h"
+
+namespace terra::cli {
+
+/// Says on stderr that maps of a format with a legend of its own (MovingAI,
+/// ROS) are read under the default legend, because the dataset has no
+/// legend.csv. Judged by its first case.
+void NoteDefaultLegend(const DatasetFolder& dataset);
+
+}  // namespace terra::cli

@@ -20,11 +20,15 @@ struct Comparison {
   std::optional<Estimate> mogr_difference;
 };
 
-/// Other repeats than 0 are left out. Keeps 32 bytes of a case. Errors: those
+/// Other repeats than 0 are left out. `cases` are at most as many as either
+/// has; of `at_once` of them 32 bytes each are kept, for more the rows are read
+/// once more. The interval is of a sample (ClusteredMean) then. Errors: those
 /// of the readers.
 Result<Comparison> ComparePaired(const ScoreReader& first,
                                  const CountingRule& first_rule,
                                  const ScoreReader& second,
-                                 const CountingRule& second_rule);
+                                 const CountingRule& second_rule,
+                                 std::int64_t cases = 0,
+                                 std::int64_t at_once = kMaxCasesKept);
 
 }  // namespace terra::benchmark

@@ -128,7 +128,8 @@ Result<Table> PairedTable(const std::vector<LoadedRun>& runs,
     for (std::size_t i = 1; i < runs.size(); ++i) {
       const Result<Comparison> c = ComparePaired(
           ReaderOfGroup(runs[i], group), runs[i].description.rule,
-          ReaderOfGroup(reference, group), reference.description.rule);
+          ReaderOfGroup(reference, group), reference.description.rule,
+          reference.num_rows);
       if (!c.ok()) return c.error();
       if (c->cases > 0) block.rows.push_back(PairedRow(runs[i], *c));
     }

@@ -55,15 +55,23 @@ struct GroupBuilder {
   RepeatsBuilder repeats;
 };
 
+// A run of very many cases is summed up from a sample of them.
+struct Samples {
+  CasePart cases;
+  CasePart repeats;  // Of which more is kept.
+};
+
 GroupBuilder& BuilderOf(std::vector<GroupBuilder>& builders,
-                        const std::string& group, const CountingRule& rule) {
+                        const std::string& group, const CountingRule& rule,
+                        const Samples& samples) {
   const auto found = std::find_if(builders.begin(), builders.end(),
                                   [&](const GroupBuilder& builder) {
                                     return builder.group == group;
                                   });
   if (found != builders.end()) return *found;
   return builders.emplace_back(
-      GroupBuilder{group, MetricsBuilder(rule), RepeatsBuilder(rule)});
+      GroupBuilder{group, MetricsBuilder(rule, samples.cases),
+                   RepeatsBuilder(rule, samples.repeats)});
 }
 
 // A case as two runs must have it alike.
@@ -77,25 +85,24 @@ bool KeyIsLess(const CaseFacts& a, const CaseFacts& b) {
   return a.key < b.key;
 }
 
-// In order of the keys.
-Result<std::vector<CaseFacts>> ReadFacts(const LoadedRun& run) {
+// Those of a part, in order of the keys.
+Result<std::vector<CaseFacts>> ReadFacts(const LoadedRun& run, CasePart part) {
   std::vector<CaseFacts> facts;
   const Status read = run.read([&](const Score& score) {
-    if (score.repeat != 0) return;
-    facts.push_back(
-        {CaseKey(score.case_id), score.map_id, score.baseline_cost});
+    const std::uint64_t key = CaseKey(score.case_id);
+    if (score.repeat != 0 || !part.Takes(key)) return;
+    facts.push_back({key, score.map_id, score.baseline_cost});
   });
   if (!read.ok()) return read.error();
   std::sort(facts.begin(), facts.end(), KeyIsLess);
   return facts;
 }
 
-// The first case that both have on different maps or baselines. Runs with the
-// same cases have none, which is seen without reading their rows.
-Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b) {
+// A case of a part that both have on different maps or baselines.
+Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b,
+                                  CasePart part) {
   std::string different;
-  if (a.cases_digest == b.cases_digest) return different;
-  const auto of_a = ReadFacts(a);
+  const auto of_a = ReadFacts(a, part);
   if (!of_a.ok()) return of_a.error();
   const Status read = b.read([&](const Score& score) {
     const CaseFacts in_b{CaseKey(score.case_id), score.map_id,
@@ -112,6 +119,17 @@ Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b) {
   });
   if (!read.ok()) return read.error();
   return different;
+}
+
+// Runs with the same cases have none, which is seen without reading their rows.
+Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b) {
+  if (a.cases_digest == b.cases_digest) return std::string();
+  const std::uint64_t parts = NumParts(a.num_rows);
+  for (CasePart part{0, parts}; part.index < parts; ++part.index) {
+    Result<std::string> different = DifferentCase(a, b, part);
+    if (!different.ok() || !different->empty()) return different;
+  }
+  return std::string();
 }
 
 // In ascending order.
@@ -145,8 +163,11 @@ Result<Keys> CommonKeys(const std::vector<LoadedRun>& runs) {
 
 }  // namespace
 
-Status SumUp(LoadedRun& run) {
+Status SumUp(LoadedRun& run, std::int64_t at_once) {
   const CountingRule& rule = run.description.rule;
+  const std::int64_t cases = run.description.num_cases;
+  const Samples samples = {{0, NumParts(cases, at_once)},
+                           {0, NumParts(4 * cases, at_once)}};
   std::vector<GroupBuilder> builders;
   run.num_rows = run.num_unanswered = 0;
   run.cases_digest = 0;
@@ -154,7 +175,7 @@ Status SumUp(LoadedRun& run) {
     ++run.num_rows;
     run.num_unanswered += score.kind == AttemptKind::kNoAnswer ? 1 : 0;
     run.cases_digest = CasesDigest(run.cases_digest, score);
-    GroupBuilder& builder = BuilderOf(builders, score.group, rule);
+    GroupBuilder& builder = BuilderOf(builders, score.group, rule, samples);
     builder.metrics.Add(score);
     if (run.description.repeats > 1) builder.repeats.Add(score);
   });

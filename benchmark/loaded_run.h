@@ -36,8 +36,10 @@ struct LoadedRun {
   bool complete() const;
 };
 
-/// Works out the figures of a run from its scores. Errors: those of `read`.
-Status SumUp(LoadedRun& run);
+/// Works out the figures of a run from its scores. Of more cases than `at_once`
+/// times, intervals of means and figures of repeats are those of a sample of at
+/// least half as many, chosen by the cases' keys. Errors: those of `read`.
+Status SumUp(LoadedRun& run, std::int64_t at_once = kMaxCasesKept);
 
 /// Reads runs; a folder without run.json stands for all runs below it.
 /// Errors: name the file; no run found.

@@ -101,15 +101,17 @@ void MetricsBuilder::Add(const Score& score) {
   m.candidates += score.candidates;
   m.candidates_lower += score.candidates_lower;
   m.candidates_invalid += score.candidates_invalid;
-  acr_.Add(score.cluster, c.lower, c.reduction);
-  mean_gap_.Add(score.cluster, c.gap, c.gap_size);
-  mogr_.Add(score.cluster, c.gap, c.recovery);
-  t_prep_.push_back(score.t_prep);
-  t_llm_.push_back(score.t_llm);
-  t_det_.push_back(score.t_det);
   m.tokens_in += score.tokens_in;
   m.tokens_out += score.tokens_out;
   m.spend += score.spend;
+  const bool sampled = sample_.Takes(CaseKey(score.case_id));
+  acr_.Add(score.cluster, c.lower, c.reduction, sampled);
+  mean_gap_.Add(score.cluster, c.gap, c.gap_size, sampled);
+  mogr_.Add(score.cluster, c.gap, c.recovery, sampled);
+  if (!sampled) return;
+  t_prep_.push_back(score.t_prep);
+  t_llm_.push_back(score.t_llm);
+  t_det_.push_back(score.t_det);
 }
 
 Metrics MetricsBuilder::Finish() {
@@ -158,7 +160,7 @@ Metrics ComputeMetrics(const std::vector<Score>& scores,
 
 void RepeatsBuilder::Add(const Score& score) {
   const CaseCounts c = CountCase(score, rule_);
-  if (!c.path) return;
+  if (!c.path || !sample_.Takes(CaseKey(score.case_id))) return;
   Tally& tally = tallies_[score.case_id];
   ++tally.repeats;
   tally.lower += c.lower ? 1 : 0;

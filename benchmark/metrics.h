@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "benchmark/case_result.h"
+#include "benchmark/case_sample.h"
 #include "benchmark/clustered_mean.h"
 #include "benchmark/statistics.h"
 #include "terrain/result.h"
@@ -47,10 +48,6 @@ struct Score {
   int candidates_invalid = 0;
 };
 Score ToScore(const CaseResult& result);
-
-/// By what cases of two runs are put together: a 64-bit hash of the id, because
-/// there may be many (of ten million ids two have the same one in 400,000).
-std::uint64_t CaseKey(const std::string& case_id);
 
 /// What one case counts as. All false for a case without a baseline, which is
 /// not in N_Path. Costs are compared with epsilon = 1e-6.
@@ -114,11 +111,14 @@ using ScoreReader =
     std::function<Status(const std::function<void(const Score&)>&)>;
 ScoreReader ReaderOf(std::vector<Score> scores);
 
-/// Gathers the metrics of one row of a table, a case at a time. Keeps 48 bytes
-/// of each (three times, three terms of means), 56 while they are worked out.
+/// Gathers the metrics of one row of a table, a case at a time. Counts, rates
+/// and means are of all cases; times and the intervals of means are of a
+/// sample, of each case of which 48 bytes are kept (three times, three terms of
+/// means), 56 while they are worked out.
 class MetricsBuilder {
  public:
-  explicit MetricsBuilder(const CountingRule& rule) : rule_(rule) {}
+  explicit MetricsBuilder(const CountingRule& rule, CasePart sample = {})
+      : rule_(rule), sample_(sample) {}
 
   /// Other repeats than 0 are left out.
   void Add(const Score& score);
@@ -130,6 +130,7 @@ class MetricsBuilder {
   void MeasureTimes();
 
   CountingRule rule_;
+  CasePart sample_;
   Metrics metrics_;
   ClusteredMean acr_;
   ClusteredMean mean_gap_;
@@ -143,7 +144,8 @@ Metrics ComputeMetrics(const std::vector<Score>& scores,
                        const CountingRule& rule);
 
 /// Answer variability over repeats: mean over the cases of the share of repeats
-/// that were lower, and the share of cases whose repeats differ in that.
+/// that were lower, and the share of cases whose repeats differ in that. Of a
+/// sample of the cases; some 100 bytes of each are kept.
 struct RepeatFigures {
   int repeats = 0;
   double mean_lower = 0;
@@ -151,7 +153,8 @@ struct RepeatFigures {
 };
 class RepeatsBuilder {
  public:
-  explicit RepeatsBuilder(const CountingRule& rule) : rule_(rule) {}
+  explicit RepeatsBuilder(const CountingRule& rule, CasePart sample = {})
+      : rule_(rule), sample_(sample) {}
 
   void Add(const Score& score);
   RepeatFigures Figures() const;
@@ -163,6 +166,7 @@ class RepeatsBuilder {
   };
 
   CountingRule rule_;
+  CasePart sample_;
   std::map<std::string, Tally> tallies_;
 };
 

@@ -94,22 +94,42 @@ std::vector<Candidate> Spread(std::vector<Candidate> all, int wanted) {
   return chosen;
 }
 
+// The candidates of a group: all, or of very many those of every n-th row.
+class Candidates {
+ public:
+  void Add(const Candidate& candidate) {
+    if (candidate.row % every_ == 0) kept_.push_back(candidate);
+    if (std::ssize(kept_) <= kMostKept) return;
+    every_ *= 2;
+    std::erase_if(kept_, [this](const Candidate& c) {
+      return c.row % every_ != 0;
+    });
+  }
+  std::vector<Candidate> Take() { return std::move(kept_); }
+
+ private:
+  static constexpr std::ptrdiff_t kMostKept = 1'000'000;
+
+  std::vector<Candidate> kept_;
+  std::int64_t every_ = 1;
+};
+
 // The rows to show, by case. Twice through the file, so that only their routes
 // are kept.
 Result<std::map<std::string, CaseResult>> ChooseRows(const std::string& path,
                                                      int per_group) {
-  std::map<std::string, std::vector<Candidate>> groups;
+  std::map<std::string, Candidates> groups;
   std::int64_t row = 0;
   const Status ranked = ReadResults(path, [&](const CaseResult& r) {
     const std::int64_t number = row++;
     if (r.code != verifier::Code::kAccepted || r.repeat != 0) return;
     const double gain = (r.baseline_cost - r.final_cost) / r.baseline_cost;
-    groups[r.group].push_back({gain, number});
+    groups[r.group].Add({gain, number});
   });
   if (!ranked.ok()) return ranked.error();
   std::set<std::int64_t> wanted;
   for (auto& [group, all] : groups) {
-    for (const Candidate& candidate : Spread(std::move(all), per_group)) {
+    for (const Candidate& candidate : Spread(all.Take(), per_group)) {
       wanted.insert(candidate.row);
     }
   }

@@ -284,6 +284,56 @@ TEST(Metrics, TheSameCaseCountsInEveryStageOfTheTimes) {
   EXPECT_DOUBLE_EQ(*m.fps, 21 / (21 * 33.0));
 }
 
+// Cases of every third id are lower, by one part in a thousand more each.
+std::vector<Score> ManyCases(int count) {
+  std::vector<Score> scores;
+  for (int i = 0; i < count; ++i) {
+    const bool lower = i % 3 == 0;
+    scores.push_back(Case("case " + std::to_string(i), AttemptKind::kPropose,
+                          lower ? 90 - 0.01 * i : 100));
+    scores.back().oracle_cost = 80;
+    scores.back().t_prep = scores.back().t_llm = scores.back().t_det = i;
+  }
+  return scores;
+}
+
+TEST(Metrics, OfASampleCountAllCasesAndMeanThemExactly) {
+  const std::vector<Score> scores = ManyCases(900);
+  const Metrics all = ComputeMetrics(scores, kRefiner);
+  MetricsBuilder builder(kRefiner, {0, 4});
+  for (const Score& score : scores) builder.Add(score);
+  const Metrics sampled = builder.Finish();
+  EXPECT_EQ(sampled.paths, 900);
+  EXPECT_EQ(sampled.lower, 300);
+  EXPECT_EQ(sampled.fir->value, all.fir->value);
+  EXPECT_DOUBLE_EQ(sampled.acr->value, all.acr->value);
+  EXPECT_DOUBLE_EQ(sampled.mogr->value, all.mogr->value);
+  // A quarter of the cases: an interval about twice as wide, around the mean.
+  const double width = all.mogr->high - all.mogr->low;
+  const double wider = sampled.mogr->high - sampled.mogr->low;
+  EXPECT_GT(wider, 1.5 * width);
+  EXPECT_LT(wider, 2.7 * width);
+  EXPECT_LT(sampled.mogr->low, all.mogr->value);
+  EXPECT_GT(sampled.mogr->high, all.mogr->value);
+  // The median time of 225 of the 900, by their ids: four standard errors.
+  EXPECT_NEAR(*sampled.prep_median, *all.prep_median, 120);
+  EXPECT_NE(*sampled.prep_median, *all.prep_median);
+}
+
+TEST(Metrics, OfASampleWithoutATermHaveNoMean) {
+  // One of a hundred is lower, and it is not in the part.
+  std::vector<Score> scores = ManyCases(100);
+  for (Score& score : scores) score.final_cost = 100;
+  scores[0].final_cost = 90;
+  const CasePart other{CaseKey(scores[0].case_id) % 4 == 0 ? 1U : 0U, 4};
+  MetricsBuilder builder(kRefiner, other);
+  for (const Score& score : scores) builder.Add(score);
+  const Metrics m = builder.Finish();
+  EXPECT_EQ(m.lower, 1);
+  EXPECT_FALSE(m.acr.has_value());
+  EXPECT_TRUE(m.mogr.has_value());
+}
+
 Comparison Paired(const std::vector<Score>& first, const CountingRule& rule,
                   const std::vector<Score>& second,
                   const CountingRule& second_rule) {
@@ -333,6 +383,27 @@ TEST(ComparePaired, CountsTheCasesInWhichOnlyOneIsLower) {
   EXPECT_DOUBLE_EQ(result.mcnemar_p, 1);
   // Recoveries: 0.5 0.5 1 0 against 0 0 0.5 0.5.
   EXPECT_DOUBLE_EQ(result.mogr_difference->value, 0.25);
+}
+
+TEST(ComparePaired, CountsTheSameInPartsAsAtOnce) {
+  const std::vector<Score> first = ManyCases(500);
+  std::vector<Score> second = ManyCases(400);
+  for (std::size_t i = 0; i < second.size(); i += 2) second[i].final_cost = 95;
+  const Comparison at_once = Paired(first, kRefiner, second, kRefiner);
+  for (const std::int64_t at_a_time : {1, 7, 100, 499}) {
+    const Comparison in_parts =
+        ComparePaired(ReaderOf(first), kRefiner, ReaderOf(second), kRefiner,
+                      std::ssize(first), at_a_time)
+            .value();
+    EXPECT_EQ(in_parts.cases, 400);
+    EXPECT_EQ(in_parts.only_first_lower, at_once.only_first_lower);
+    EXPECT_EQ(in_parts.only_second_lower, at_once.only_second_lower);
+    EXPECT_EQ(in_parts.mcnemar_p, at_once.mcnemar_p);
+    if (in_parts.mogr_difference) {
+      EXPECT_NEAR(in_parts.mogr_difference->value,
+                  at_once.mogr_difference->value, 1e-12);
+    }
+  }
 }
 
 }  // namespace

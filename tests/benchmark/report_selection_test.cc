@@ -85,6 +85,23 @@ TEST(SelectRuns, ARunMadeTwiceStandsOnceWithTheTimesOfOneCaseAtATime) {
   EXPECT_THAT(s.others, IsEmpty());
 }
 
+TEST(SumUp, OfMoreCasesThanAreKeptAtOnceTakesASample) {
+  LoadedRun run = Refiner("a", "search", 300);
+  std::vector<Score> scores = ScoresOf(run);
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    scores[i].t_prep = static_cast<double>(i);
+  }
+  SetScores(run, scores);
+  const Metrics all = MetricsOf(run, "easy");
+  ASSERT_TRUE(SumUp(run, 100).ok());
+  const Metrics sampled = MetricsOf(run, "easy");
+  EXPECT_EQ(sampled.paths, 300);
+  EXPECT_EQ(sampled.lower, all.lower);
+  EXPECT_DOUBLE_EQ(sampled.mogr->value, all.mogr->value);
+  EXPECT_NE(*sampled.prep_median, *all.prep_median);
+  EXPECT_NEAR(*sampled.prep_median, *all.prep_median, 60);
+}
+
 TEST(SelectRuns, LatencyRowsTookOneCaseAtATimeOnTheSameCases) {
   LoadedRun elsewhere = Refiner("elsewhere", "search", 3, 1);
   elsewhere.description.dataset_digest = "other maps";

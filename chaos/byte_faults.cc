@@ -162,7 +162,8 @@ std::vector<Datagram> HalfFragments(Attacker& attacker) {
 }
 
 std::vector<Datagram> OffsetWrap(Attacker& attacker) {
-  const std::string& name = attacker.AttackedChannel();
+  // A channel that the attacker does not listen to, or it is the first to end.
+  const std::string& name = attacker.channel(bus::Channel::kAdvice);
   FragmentHeader header;
   header.sequence = attacker.NextSequence();
   header.message_bytes = 1'000;

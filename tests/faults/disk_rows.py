@@ -64,11 +64,17 @@ def disk_full_for_a_while(rig):
 
 @row("disk writes fail (EIO, libfiu)", "GATE 17", ["logger:silent"])
 def disk_errors(rig):
-    rig.define("logger", "terra-logger", "--out", rig.log, before=(
-        "fiu-run", "-x", "-c", "enable_random name=posix/io/rw/pwrite,probability=0.5"))
+    control = rig.folder / "fiu-ctrl"
+    rig.define("logger", "terra-logger", "--out", rig.log,
+               before=("fiu-run", "-x", "-f", control))
     rig.set_up("searcher", "logger")
+    # Only now: a logger whose first write fails refuses to start, as it should.
+    told = rig.run("fiu-ctrl", "-f", control, "-c",
+                   "enable_random name=posix/io/rw/pwrite,probability=0.5", rig["logger"].pid)
+    require(told.returncode == 0, f"fiu-ctrl: {told.stderr}")
     served_meanwhile(rig)
-    reported(rig)
+    # Each heartbeat tells of the last write, which failed or did not.
+    reported(rig, within=20)
     rig.injected = 1
     served_meanwhile(rig)
     rig.alive(*SET, "searcher", "logger")

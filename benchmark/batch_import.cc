@@ -9,6 +9,7 @@
 #include "advisor/recording.h"
 #include "advisor/wire_json.h"
 #include "benchmark/batch.h"
+#include "terrain/files/line_reader.h"
 
 namespace terra::benchmark {
 namespace {
@@ -25,11 +26,14 @@ struct Results {
 
 Status ReadBatchResults(const WireFormat& format, const std::string& path,
                         Results& results) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorCode::kNotFound, path + ": no such file"};
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (line.find_first_not_of(" \r\t") == std::string::npos) continue;
+  Result<LineReader> lines = LineReader::Open(path);
+  if (!lines.ok()) return lines.error();
+  for (int number = 1;; ++number) {
+    const Result<bool> taken = lines->Next();
+    if (!taken.ok()) return taken.error();
+    if (!*taken) return Done{};
+    const std::string& line = lines->line();
+    if (line.find_first_not_of(" \r\t\n") == std::string::npos) continue;
     auto read = advisor::ReadBatchResult(format, line);
     if (!read.ok()) {
       return Error{read.error().code, path + ":" + std::to_string(number) +
@@ -40,7 +44,6 @@ Status ReadBatchResults(const WireFormat& format, const std::string& path,
             .second;
     if (!added) ++results.doubled;
   }
-  return Done{};
 }
 
 // An open request, as far as an import has to know it.
@@ -54,29 +57,40 @@ struct OpenRequest {
   std::string batch_id() const { return advisor::BatchId(hash, repeat); }
 };
 
-Result<std::vector<OpenRequest>> ReadOpenRequests(const std::string& folder) {
-  const std::string path = (fs::path(folder) / kOpenRequestsName).string();
-  std::ifstream file(path, std::ios::binary);
-  std::vector<OpenRequest> requests;
+Result<OpenRequest> ParseOpenRequest(const std::string& line) {
   try {
-    for (std::string line; std::getline(file, line);) {
-      const auto json = nlohmann::json::parse(line);
-      requests.push_back(
-          {line,
-           json.at("request_hash").get<std::string>(),
-           advisor::IntegerAt<int>(json, "repeat"),
-           json.at("case_id").get<std::string>(),
-           {json.at("provider").get<std::string>(),
-            json.at("model_requested").get<std::string>(),
-            json.at("settings").get<std::string>(), "provider"}});
-    }
+    const auto json = advisor::ParsedOutside(line);
+    return OpenRequest{line,
+                       json.at("request_hash").get<std::string>(),
+                       advisor::IntegerAt<int>(json, "repeat"),
+                       json.at("case_id").get<std::string>(),
+                       {json.at("provider").get<std::string>(),
+                        json.at("model_requested").get<std::string>(),
+                        json.at("settings").get<std::string>(), "provider"}};
   } catch (const nlohmann::json::exception& error) {
-    return Error{ErrorCode::kInvalid, path + ": " + error.what()};
+    return Error{ErrorCode::kInvalid, error.what()};
   }
-  if (requests.empty()) {
-    return Error{ErrorCode::kNotFound,
-                 folder + ": no batch that `terra bench export-batch` wrote"};
+}
+
+Result<std::vector<OpenRequest>> ReadOpenRequests(const std::string& folder) {
+  const Error none{ErrorCode::kNotFound,
+                   folder + ": no batch that `terra bench export-batch` wrote"};
+  const std::string path = (fs::path(folder) / kOpenRequestsName).string();
+  Result<LineReader> lines = LineReader::Open(path);
+  if (!lines.ok()) return none;
+  std::vector<OpenRequest> requests;
+  for (int number = 1;; ++number) {
+    const Result<bool> taken = lines->Next();
+    if (!taken.ok()) return taken.error();
+    if (!*taken) break;
+    Result<OpenRequest> request = ParseOpenRequest(lines->line());
+    if (!request.ok()) {
+      return Error{ErrorCode::kInvalid, path + ":" + std::to_string(number) +
+                                            ": " + request.error().message};
+    }
+    requests.push_back(*std::move(request));
   }
+  if (requests.empty()) return none;
   return requests;
 }
 

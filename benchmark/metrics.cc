@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "terrain/files/id_index.h"
+
 namespace terra::benchmark {
 namespace {
 
@@ -42,7 +44,7 @@ Score ToScore(const CaseResult& r) {
 }
 
 std::uint64_t CaseKey(const std::string& case_id) {
-  return std::hash<std::string>{}(case_id);
+  return HashOfId(case_id);
 }
 
 CaseCounts CountCase(const Score& score, const CountingRule& rule) {

@@ -3,6 +3,8 @@
 #include <optional>
 #include <utility>
 
+#include "benchmark/results_reader.h"
+
 namespace terra::benchmark {
 namespace {
 
@@ -10,7 +12,7 @@ namespace {
 class RowCursor {
  public:
   static Result<RowCursor> Open(const std::string& path,
-                                ResultsReader::Place place) {
+                                LineReader::Place place) {
     Result<ResultsReader> reader = ResultsReader::Open(path);
     if (!reader.ok()) return reader.error();
     if (place.offset > 0) reader->GoTo(place);
@@ -24,7 +26,7 @@ class RowCursor {
   const CaseResult& row() const { return *row_; }
   const std::string& line() const { return reader_.line(); }
   /// Where row() begins.
-  ResultsReader::Place place() const { return place_; }
+  LineReader::Place place() const { return place_; }
 
   bool IsAt(const std::string& case_id, int repeat) const {
     return row_ && row_->repeat == repeat && row_->case_id == case_id;
@@ -42,7 +44,7 @@ class RowCursor {
   explicit RowCursor(ResultsReader reader) : reader_(std::move(reader)) {}
 
   ResultsReader reader_;
-  ResultsReader::Place place_;
+  LineReader::Place place_;
   std::optional<CaseResult> row_;
 };
 
@@ -107,7 +109,7 @@ Status MergeSortedParts(const std::string& path, const SortedParts& parts,
                         const CaseIds& cases, int repeats,
                         const std::function<void(const OrderedRow&)>& use) {
   std::vector<RowCursor> cursors;
-  for (const ResultsReader::Place place : parts) {
+  for (const LineReader::Place place : parts) {
     Result<RowCursor> cursor = RowCursor::Open(path, place);
     if (!cursor.ok()) return cursor.error();
     cursors.push_back(*std::move(cursor));

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "benchmark/case_list.h"
-#include "benchmark/results_reader.h"
+#include "benchmark/case_result.h"
+#include "terrain/files/line_reader.h"
 #include "terrain/result.h"
 
 namespace terra::benchmark {
@@ -14,7 +15,7 @@ namespace terra::benchmark {
 /// What a results.csv is made of: rows in order of cases and repeats, and again
 /// in order from each of these places on. A run that was started n times has at
 /// most n parts.
-using SortedParts = std::vector<ResultsReader::Place>;
+using SortedParts = std::vector<LineReader::Place>;
 
 /// More than any run has; each takes a pass through the cases.
 inline constexpr std::size_t kMaxSortedParts = 64;

@@ -3,36 +3,26 @@
 namespace terra::benchmark {
 
 Result<ResultsReader> ResultsReader::Open(const std::string& path) {
-  ResultsReader reader(path, std::ifstream(path, std::ios::binary));
-  reader.TakeLine();
-  if (reader.line_ != ResultsHeader() &&
-      reader.line_ != ResultsHeader(ResultColumns::kWithCandidates)) {
+  Result<LineReader> lines = LineReader::Open(path);
+  if (!lines.ok()) return lines.error();
+  const Result<bool> header = lines->Next();
+  if (!header.ok()) return header.error();
+  if (lines->line() != ResultsHeader() &&
+      lines->line() != ResultsHeader(ResultColumns::kWithCandidates)) {
     return Error{ErrorCode::kInvalid,
                  path + ":1: this is not the header of a results.csv"};
   }
-  return reader;
+  return ResultsReader(path, *std::move(lines));
 }
 
 Result<std::optional<CaseResult>> ResultsReader::Next() {
-  const int number = place_.line;
-  if (!TakeLine()) return std::optional<CaseResult>();
-  Result<CaseResult> row = ParseResultLine(line_, path_, number);
+  const int number = place().line;
+  const Result<bool> taken = lines_.Next();
+  if (!taken.ok()) return taken.error();
+  if (!*taken) return std::optional<CaseResult>();
+  Result<CaseResult> row = ParseResultLine(line(), path_, number);
   if (!row.ok()) return row.error();
   return std::optional(*std::move(row));
-}
-
-void ResultsReader::GoTo(Place place) {
-  place_ = place;
-  file_.clear();
-  file_.seekg(place.offset);
-}
-
-bool ResultsReader::TakeLine() {
-  if (!std::getline(file_, line_)) return false;
-  line_ += '\n';
-  place_.offset += static_cast<std::int64_t>(line_.size());
-  ++place_.line;
-  return true;
 }
 
 Status ReadResults(const std::string& path,

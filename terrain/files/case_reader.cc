@@ -1,7 +1,5 @@
 #include "terrain/files/case_reader.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -26,10 +24,6 @@ bool StaysInside(const std::string& relative) {
   const fs::path path(relative);
   return !relative.empty() && path.is_relative() &&
          std::find(path.begin(), path.end(), "..") == path.end();
-}
-
-std::uint64_t HashOf(const std::string& id) {
-  return XXH3_64bits(id.data(), id.size());
 }
 
 // Finds hashes that come twice. What is too much for one go is done in parts,
@@ -106,7 +100,7 @@ Status RefuseDoubles(const std::string& folder,
   if (hashes.empty()) return Done{};
   std::unordered_set<std::string> seen;
   return ForEachCase(folder, [&](const DatasetCase& c, int line) -> Status {
-    if (!hashes.contains(HashOf(c.case_id))) return Done{};
+    if (!hashes.contains(HashOfId(c.case_id))) return Done{};
     if (seen.insert(c.case_id).second) return Done{};
     return Error{ErrorCode::kInvalid, TablePath(folder) + ":" +
                                           std::to_string(line) + ": case_id '" +
@@ -169,6 +163,9 @@ Result<DatasetCase> CaseReader::Parse(CsvRow row) const {
     }
   }
   if (result.case_id.empty()) return fail("empty case_id");
+  if (result.case_id.find('\n') != std::string::npos) {
+    return fail("a case_id with a line break");
+  }
   if (!StaysInside(result.map)) {
     return fail("map '" + result.map +
                 "' must be a path inside the dataset's folder");
@@ -182,7 +179,7 @@ Status CheckCases(const std::string& dataset_folder,
   DoubleFinder finder(ids_at_once);
   const Status first =
       ForEachCase(dataset_folder, [&](DatasetCase c, int) -> Status {
-        finder.Add(HashOf(c.case_id));
+        finder.Add(HashOfId(c.case_id));
         use(std::move(c));
         return Done{};
       });
@@ -190,7 +187,7 @@ Status CheckCases(const std::string& dataset_folder,
   for (finder.FinishPart(); finder.HasMoreParts(); finder.FinishPart()) {
     const Status next =
         ForEachCase(dataset_folder, [&](const DatasetCase& c, int) -> Status {
-          finder.Add(HashOf(c.case_id));
+          finder.Add(HashOfId(c.case_id));
           return Done{};
         });
     if (!next.ok()) return next;

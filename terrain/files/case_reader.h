@@ -17,7 +17,8 @@ class CaseReader {
   static Result<CaseReader> Open(const std::string& dataset_folder);
 
   /// The next case; none at the end. Errors: name file and line; a case without
-  /// an id, a number that is none, a map that is not inside the folder.
+  /// an id or with one of two lines, a number that is none, a map that is not
+  /// inside the folder.
   Result<std::optional<DatasetCase>> Next();
 
   /// Where the last case stands in the file.

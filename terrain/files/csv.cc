@@ -1,7 +1,6 @@
 #include "terrain/files/csv.h"
 
 #include <algorithm>
-#include <fstream>
 #include <utility>
 
 #include "terrain/files/whole_file.h"
@@ -179,9 +178,9 @@ Result<CsvTable> ReadCsv(const std::string& path,
 
 Result<CsvReader> CsvReader::Open(
     const std::string& path, std::initializer_list<std::string_view> columns) {
-  Result<std::ifstream> file = OpenToRead(path);
-  if (!file.ok()) return file.error();
-  CsvReader reader(path, *std::move(file));
+  Result<LineReader> lines = LineReader::Open(path);
+  if (!lines.ok()) return lines.error();
+  CsvReader reader(path, *std::move(lines));
   Result<std::optional<CsvRow>> header = reader.NextRecord();
   if (!header.ok()) return header.error();
   if (!header->has_value()) return NoHeader(path);
@@ -202,37 +201,35 @@ Result<std::optional<CsvRow>> CsvReader::Next() {
 }
 
 Result<std::optional<CsvRow>> CsvReader::NextRecord() {
-  while (TakeRecord()) {
+  for (;;) {
+    const int first = lines_.place().line;
+    const Result<bool> taken = TakeRecord();
+    if (!taken.ok()) return taken.error();
+    if (!*taken) return std::optional<CsvRow>();
     std::string_view record = record_;
-    if (line_ == 1 && record.starts_with(kCsvByteOrderMark)) {
+    if (first == 1 && record.starts_with(kCsvByteOrderMark)) {
       record.remove_prefix(kCsvByteOrderMark.size());
     }
-    CsvScanner scanner(record, path_, line_);
+    CsvScanner scanner(record, path_, first);
     if (scanner.AtEnd()) continue;  // Nothing but the byte order mark.
     Result<CsvRow> row = scanner.Next();
     if (!row.ok()) return row.error();
-    line_ = scanner.line();
     if (!IsEmptyLine(*row)) return std::optional(*std::move(row));
   }
-  if (file_.bad()) {
-    return Error{ErrorCode::kUnavailable, path_ + ": cannot be read"};
-  }
-  return std::optional<CsvRow>();
 }
 
 // An odd number of quotes so far means that a line break is inside a field.
-bool CsvReader::TakeRecord() {
-  constexpr std::size_t kMaxRecordBytes = std::size_t{1} << 24;
+Result<bool> CsvReader::TakeRecord() {
   record_.clear();
   bool inside = false;
-  while ((inside || record_.empty()) && record_.size() < kMaxRecordBytes &&
-         std::getline(file_, next_line_)) {
-    if (std::count(next_line_.begin(), next_line_.end(), '"') % 2 == 1) {
-      inside = !inside;
-    }
-    record_ += next_line_;
-    if (!file_.eof()) record_ += '\n';
-  }
+  do {
+    const Result<bool> taken = lines_.Next();
+    if (!taken.ok()) return taken.error();
+    if (!*taken) break;
+    const std::string& line = lines_.line();
+    if (std::count(line.begin(), line.end(), '"') % 2 == 1) inside = !inside;
+    record_ += line;
+  } while (inside && record_.size() < LineReader::kMaxLineBytes);
   return !record_.empty();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <fstream>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "terrain/files/line_reader.h"
 #include "terrain/result.h"
 
 namespace terra {
@@ -44,7 +44,7 @@ Result<CsvRow> ParseCsvRecord(std::string_view record, const std::string& name,
                               int line);
 
 /// The same for tables of any length: record by record, in bounded memory (a
-/// record has at most 16 MB).
+/// record has at most 2 LineReader::kMaxLineBytes).
 class CsvReader {
  public:
   /// Reads the header. Errors: as ReadCsv.
@@ -58,18 +58,16 @@ class CsvReader {
   Result<std::optional<CsvRow>> Next();
 
  private:
-  CsvReader(std::string path, std::ifstream file)
-      : path_(std::move(path)), file_(std::move(file)) {}
+  CsvReader(std::string path, LineReader lines)
+      : path_(std::move(path)), lines_(std::move(lines)) {}
 
   Result<std::optional<CsvRow>> NextRecord();
-  bool TakeRecord();
+  Result<bool> TakeRecord();
 
   std::string path_;
-  std::ifstream file_;
+  LineReader lines_;
   CsvTable table_;
   std::string record_;
-  std::string next_line_;
-  int line_ = 1;  ///< Of the next record.
 };
 
 /// Excel and others put it before a text in UTF-8.

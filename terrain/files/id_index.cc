@@ -1,5 +1,7 @@
 #include "terrain/files/id_index.h"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -8,6 +10,10 @@
 #include "terrain/require.h"
 
 namespace terra {
+
+std::uint64_t HashOfId(std::string_view id) {
+  return XXH3_64bits(id.data(), id.size());
+}
 
 IdIndex::IdIndex(std::vector<const std::string*> ids)
     : ids_(std::move(ids)), by_id_(ids_.size()) {

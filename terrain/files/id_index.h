@@ -9,6 +9,10 @@
 
 namespace terra {
 
+/// XXH3-64 of an id (Collet, xxHash): the same on every machine, so that what
+/// is chosen by it is too.
+std::uint64_t HashOfId(std::string_view id);
+
 /// A list of ids that can be looked up, in 12 bytes an id. The strings must
 /// outlive it and stay where they are.
 class IdIndex {

@@ -35,6 +35,17 @@ TEST(CaseReader, ReadsCaseAfterCaseAndNamesTheLineOfAFault) {
   EXPECT_THAT(ErrorMessage(reader->Next()), HasSubstr("cases.csv:5: goal_x"));
 }
 
+// Results are kept in a line for each case.
+TEST(CaseReader, AnIdOfTwoLinesIsRefused) {
+  const TempFolder folder;
+  folder.Write("cases.csv", kHeader + Line("a") + Line("\"b\nc\""));
+  auto reader = CaseReader::Open(folder.Path(""));
+  ASSERT_TRUE(reader.ok()) << ErrorMessage(reader);
+  ASSERT_TRUE(reader->Next().ok());
+  EXPECT_THAT(ErrorMessage(reader->Next()),
+              HasSubstr("cases.csv:3: a case_id with a line break"));
+}
+
 // Few ids at once make many parts.
 class CheckCasesInParts : public ::testing::TestWithParam<std::size_t> {};
 

@@ -39,10 +39,11 @@ class Walker {
         length - 1 > limit) {
       return false;
     }
-    const auto text = bytes_.subspan(at_, static_cast<std::size_t>(length));
-    at_ += text.size();
     // The length counts the zero at the end, which must be the only one.
-    return std::find(text.begin(), text.end(), 0) == text.end() - 1;
+    const auto text = bytes_.subspan(at_, static_cast<std::size_t>(length) - 1);
+    at_ += static_cast<std::size_t>(length);
+    return std::find(text.begin(), text.end(), 0) == text.end() &&
+           bytes_[at_ - 1] == 0;
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "terrain/map.h"
+#include "terrain/segment_steps.h"
 
 namespace terra::planner {
 
@@ -99,11 +100,11 @@ class StepCosts {
     if (n.minor == 0 || n.minor == n.major) {
       return Run(from, to);
     }
-    return cut_corners_ ? Bresenham<true>(from, to)
-                        : Bresenham<false>(from, to);
+    return cut_corners_ ? Steps<true>(from, to) : Steps<false>(from, to);
   }
 
-  /// Segment for ends in one row, column or diagonal: no Bresenham needed.
+  /// Segment for ends in one row, column or diagonal: no need to decide its
+  /// steps.
   Cost Run(Cell from, Cell to) const {
     const Lengths n(from, to);
     const std::ptrdiff_t step = StepX(from, to) + StepY(from, to);
@@ -138,9 +139,11 @@ class StepCosts {
   static int Sign(int v) { return (v > 0) - (v < 0); }
   std::ptrdiff_t StepX(Cell from, Cell to) const { return Sign(to.x - from.x); }
   std::ptrdiff_t StepY(Cell from, Cell to) const {
-    return Sign(to.y - from.y) * width_;
+    return Sign(to.y - from.y) * std::ptrdiff_t{width_};
   }
-  std::ptrdiff_t Index(Cell c) const { return c.y * width_ + c.x; }
+  std::ptrdiff_t Index(Cell c) const {
+    return c.y * std::ptrdiff_t{width_} + c.x;
+  }
 
   // The cells beside each step of a diagonal.
   bool SidesPassable(Cell from, Cell to) const {
@@ -156,33 +159,22 @@ class StepCosts {
     return true;
   }
 
-  // SegmentCells (terrain/segment.h), told by its longer side: that one moves
-  // at each step, the shorter one when twice the error is at most its length.
   template <bool kCutCorners>
-  Cost Bresenham(Cell from, Cell to) const {
-    const Lengths n(from, to);
-    const bool x_is_major = std::abs(to.x - from.x) == n.major;
-    std::ptrdiff_t major_step = StepX(from, to);
-    std::ptrdiff_t minor_step = StepY(from, to);
-    if (!x_is_major) {
-      std::swap(major_step, minor_step);
-    }
+  Cost Steps(Cell from, Cell to) const {
+    SegmentSteps steps(from, to, width_);
     const std::uint8_t* cell = classes_ + Index(from);
     Sum straight{};
     Sum diagonal{};
-    int error = n.major - n.minor;
-    for (int k = 0; k < n.major; ++k) {
-      const bool minor_moves = 2 * error <= n.major;
-      error -= n.minor;
-      if (minor_moves) {
-        if (!kCutCorners && (cell[major_step] == 0 || cell[minor_step] == 0)) {
+    for (int k = 0; k < steps.count(); ++k) {
+      if (steps.NextIsDiagonal()) {
+        if (!kCutCorners && (cell[steps.along_longer()] == 0 ||
+                             cell[steps.along_shorter()] == 0)) {
           return Arithmetic::kUnreached;
         }
-        error += n.major;
-        cell += major_step + minor_step;
+        cell += steps.along_longer() + steps.along_shorter();
         diagonal += sum_of_class_[*cell];
       } else {
-        cell += major_step;
+        cell += steps.along_longer();
         straight += sum_of_class_[*cell];
       }
     }
@@ -193,7 +185,7 @@ class StepCosts {
   }
 
   const std::uint8_t* classes_;
-  std::ptrdiff_t width_;
+  int width_;
   bool cut_corners_;
   Sum cheapest_{};
   std::array<Sum, 256> sum_of_class_;

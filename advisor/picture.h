@@ -26,7 +26,7 @@ struct Picture {
 /// Encodes as PNG: 8-bit RGB, no metadata.
 EncodedPicture EncodePicture(const Picture& picture);
 
-/// Decodes a PNG of at most kMaxPictureSide x 2 a side.
+/// Decodes a 24-bit PNG of at most kMaxPictureSide x 2 a side.
 Result<Picture> DecodePicture(std::string_view png);
 
 /// See EncodedPicture::pixel_hash.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "benchmark/results_reader.h"
@@ -185,13 +184,17 @@ Result<FramePaths> FindFrames(const std::string& folder) {
 Result<cv::Mat> ReadFrame(const std::string& path, cv::Size size) {
   const Result<std::string> bytes = ReadWholeFile(path, kMaxImageBytes);
   if (!bytes.ok()) return bytes.error();
-  Result<cv::Mat> frame = DecodePng(*bytes, path);
+  Result<Pixels> frame = DecodePng(*bytes, TerrainMap::kMaxSide, path);
   if (!frame.ok()) return frame.error();
-  if (frame->size() != size || frame->type() != CV_8UC3) {
+  if (cv::Size(frame->width, frame->height) != size ||
+      frame->order != PixelOrder::kRgb) {
     return Error{ErrorCode::kInvalid,
                  path + ": a frame must be 24-bit colour, of its map's size"};
   }
-  return frame;
+  cv::Mat image;
+  cv::cvtColor(cv::Mat(size, CV_8UC3, frame->bytes.data()), image,
+               cv::COLOR_RGB2BGR);
+  return image;
 }
 
 void DrawRoutes(cv::Mat& image, const Route& baseline,
@@ -213,10 +216,10 @@ cv::Mat DrawPanel(const TerrainMap& map, const Route& baseline,
   return image;
 }
 
-std::string EncodePng(const cv::Mat& image) {
-  std::vector<unsigned char> png;
-  cv::imencode(".png", image, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  return {png.begin(), png.end()};
+// A page with many of them should be small.
+std::string Encode(const cv::Mat& image) {
+  return EncodePng({image.data, image.cols, image.rows, PixelOrder::kBgr},
+                   PngEffort::kSmall);
 }
 
 // The baseline that the run had.
@@ -246,14 +249,14 @@ Result<Panel> MakePanel(const RunDescription& run, const DatasetFolder& dataset,
     DrawRoutes(*frame, baseline, result.final_route);
     cv::vconcat(*frame, image.clone(), image);
   }
-  return Panel{Caption(result), EncodePng(image)};
+  return Panel{Caption(result), Encode(image)};
 }
 
 }  // namespace
 
 std::string DrawPanelPng(const TerrainMap& map, const Route& baseline,
                          const Route& final_route, int stride) {
-  return EncodePng(DrawPanel(map, baseline, final_route, stride));
+  return Encode(DrawPanel(map, baseline, final_route, stride));
 }
 
 Result<std::vector<Panel>> MakePanels(const std::string& run_folder,

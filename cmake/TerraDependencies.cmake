@@ -9,6 +9,6 @@ if(TERRA_BUILD_TESTS)
   include(GoogleTest)
 endif()
 terra_find_library(terra::opencv HEADER opencv2/core.hpp SUFFIX opencv4
-                   LIBRARIES opencv_imgcodecs opencv_imgproc opencv_core)
+                   LIBRARIES opencv_imgproc opencv_core)
 terra_find_library(terra::zstd HEADER zstd.h LIBRARIES zstd)
 terra_find_library(terra::xxhash HEADER xxhash.h LIBRARIES xxhash)

@@ -57,16 +57,18 @@ std::string Duration(double seconds) {
   return Format("%.2f s", seconds);
 }
 
-std::string Base64(std::span<const std::uint8_t> bytes) {
+std::string Base64(std::string_view bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = std::uint32_t{bytes[i]} << 16;
-    if (have > 1) group |= std::uint32_t{bytes[i + 1]} << 8;
-    if (have > 2) group |= bytes[i + 2];
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const char byte = k < have ? bytes[i + k] : '\0';
+      group = group << 8 | static_cast<std::uint8_t>(byte);
+    }
     for (std::size_t digit = 0; digit < 4; ++digit) {
       text += digit <= have ? kDigits[(group >> (18 - 6 * digit)) & 63] : '=';
     }

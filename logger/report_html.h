@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,7 +31,7 @@ std::string Number(double value, int decimals = 2);
 std::string Duration(double seconds);
 
 /// RFC 4648, section 4.
-std::string Base64(std::span<const std::uint8_t> bytes);
+std::string Base64(std::string_view bytes);
 
 /// Explains colours: {as CSS has it, name}; the name is HTML already.
 std::string Key(const std::vector<std::pair<std::string, std::string>>& colors);

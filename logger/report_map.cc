@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "logger/report_html.h"
+#include "terrain/png/png.h"
 
 namespace terra::logger {
 namespace {
@@ -16,16 +15,16 @@ namespace {
 constexpr int kMaxSide = 1'000;
 
 // One pixel for every stride-th cell.
-cv::Mat Picture(const TerrainMap& map, int stride) {
+Pixels Picture(const TerrainMap& map, int stride) {
   const int width = (map.width() + stride - 1) / stride;
   const int height = (map.height() + stride - 1) / stride;
-  cv::Mat picture(height, width, CV_8UC3);
+  Pixels picture{width, height, PixelOrder::kRgb, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const Terrain* terrain =
           map.legend().Find(map.ids()(y * stride, x * stride));
       const Color color = terrain != nullptr ? terrain->color : Color{};
-      picture.at<cv::Vec3b>(y, x) = {color.b, color.g, color.r};
+      picture.bytes.insert(picture.bytes.end(), {color.r, color.g, color.b});
     }
   }
   return picture;
@@ -60,8 +59,7 @@ std::string MapFigure(const TerrainMap& map,
                       Cell goal) {
   const int side = std::max(map.width(), map.height());
   const int stride = (side + kMaxSide - 1) / kMaxSide;
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", Picture(map, stride), png);
+  const std::string png = EncodePng(Picture(map, stride).view());
   const double unit = side / 300.0;
   std::string svg =
       Format(

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
-#include <opencv2/core.hpp>
-
 #include "terrain/map.h"
+#include "terrain/png/png.h"
 #include "terrain/result.h"
 
 namespace terra {
@@ -14,25 +15,15 @@ namespace terra {
 /// be 201 MB even without compression.
 inline constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20;
 
-/// Returns whether a file begins like a PNG.
-bool IsPng(std::string_view bytes);
+/// Decodes a binary PGM (P5) of 8 bits, of a size that a map may have.
+/// Errors: name it.
+Result<Pixels> DecodePgm(std::string_view bytes, const std::string& name);
 
-/// Decodes a PNG without changing a value: CV_8UC1 from 8-bit grey, CV_8UC3
-/// (blue, green, red) from 24-bit colour. All else is refused, because OpenCV
-/// would convert it silently: palettes, other depths, transparency.
-///
-/// The chunk list is checked before, so that a torn file, a size above
-/// TerrainMap::kMaxSide or a strange header never reaches the decoder.
-Result<cv::Mat> DecodePng(std::string_view bytes, const std::string& name);
+/// Encodes pixels as PNG and writes the file.
+Status WritePng(const PixelView& pixels, const std::string& path);
 
-/// Decodes a binary PGM (P5) of 8 bits. Errors as above.
-Result<cv::Mat> DecodePgm(std::string_view bytes, const std::string& name);
-
-/// Encodes CV_8UC1 or CV_8UC3 as PNG and writes the file.
-Status WritePng(const cv::Mat& image, const std::string& path);
-
-/// Copies a CV_8UC1 image into a raster.
-ByteRaster ToRaster(const cv::Mat& image);
+/// Copies a grey picture into a raster.
+ByteRaster ToRaster(const Pixels& pixels);
 
 /// Errors: a size that no TerrainMap has.
 Status CheckMapSize(std::int64_t width, std::int64_t height,

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "terrain/builtin_legends.h"
 #include "terrain/files/image.h"
@@ -87,23 +89,24 @@ Result<MapFile> ReadMap(const std::string& path,
 }
 
 Status WriteIdPng(const TerrainMap& map, const std::string& path) {
-  cv::Mat image(map.height(), map.width(), CV_8UC1);
-  std::copy_n(map.ids().data(), map.ids().size(), image.data);
-  return WritePng(image, path);
+  return WritePng({map.ids().data(), map.width(), map.height()}, path);
 }
 
 Status WriteColorPng(const TerrainMap& map, const std::string& path) {
-  std::array<cv::Vec3b, 256> color_of_id{};
+  std::array<Color, 256> color_of_id{};
   for (const Terrain& terrain : map.legend().terrains()) {
-    color_of_id[static_cast<std::size_t>(terrain.id)] =
-        cv::Vec3b(terrain.color.b, terrain.color.g, terrain.color.r);
+    color_of_id[static_cast<std::size_t>(terrain.id)] = terrain.color;
   }
-  cv::Mat image(map.height(), map.width(), CV_8UC3);
-  for (int y = 0; y < map.height(); ++y) {
-    auto* row = image.ptr<cv::Vec3b>(y);
-    for (int x = 0; x < map.width(); ++x) row[x] = color_of_id[map.ids()(y, x)];
+  std::vector<std::uint8_t> rgb;
+  const std::span ids(map.ids().data(),
+                      static_cast<std::size_t>(map.ids().size()));
+  rgb.reserve(3 * ids.size());
+  for (const std::uint8_t id : ids) {
+    const Color color = color_of_id[id];
+    rgb.insert(rgb.end(), {color.r, color.g, color.b});
   }
-  return WritePng(image, path);
+  return WritePng({rgb.data(), map.width(), map.height(), PixelOrder::kRgb},
+                  path);
 }
 
 }  // namespace terra

@@ -223,7 +223,7 @@ Status WritePicture(const TerrainMap& map, const PictureOptions& options,
   if (options.legend) {
     image = Beside(image, DrawBox(BoxRows(map, options), image.rows));
   }
-  return WritePng(image, path);
+  return WritePng({image.data, image.cols, image.rows, PixelOrder::kBgr}, path);
 }
 
 }  // namespace terra

@@ -14,8 +14,7 @@ std::string HexColor(std::uint32_t rgb) {
   return text.data();
 }
 
-Error UnknownColor(const std::string& name, Cell cell, const cv::Vec3b& pixel) {
-  const Color color{pixel[2], pixel[1], pixel[0]};
+Error UnknownColor(const std::string& name, Cell cell, Color color) {
   return Error{ErrorCode::kInvalid,
                name + ": pixel " + ToString(cell) + " has colour " +
                    HexColor(ToRgb(color)) + " (RGB " + std::to_string(color.r) +
@@ -26,21 +25,21 @@ Error UnknownColor(const std::string& name, Cell cell, const cv::Vec3b& pixel) {
                    "rounded to the nearest)"};
 }
 
-Result<ByteRaster> FromColors(const cv::Mat& image, const Legend& legend,
+Result<ByteRaster> FromColors(const Pixels& image, const Legend& legend,
                               const std::string& name) {
   std::unordered_map<std::uint32_t, std::uint8_t> id_of_color;
   for (const Terrain& terrain : legend.terrains()) {
     id_of_color.emplace(ToRgb(terrain.color),
                         static_cast<std::uint8_t>(terrain.id));
   }
-  ByteRaster ids(image.rows, image.cols);
-  for (int y = 0; y < image.rows; ++y) {
-    const auto* row = image.ptr<cv::Vec3b>(y);
-    for (int x = 0; x < image.cols; ++x) {
-      const auto found =
-          id_of_color.find(ToRgb(Color{row[x][2], row[x][1], row[x][0]}));
+  ByteRaster ids(image.height, image.width);
+  for (int y = 0; y < image.height; ++y) {
+    const std::uint8_t* rgb = image.Row(y);
+    for (int x = 0; x < image.width; ++x, rgb += 3) {
+      const Color color{rgb[0], rgb[1], rgb[2]};
+      const auto found = id_of_color.find(ToRgb(color));
       if (found == id_of_color.end()) {
-        return UnknownColor(name, Cell{x, y}, row[x]);
+        return UnknownColor(name, Cell{x, y}, color);
       }
       ids(y, x) = found->second;
     }
@@ -52,9 +51,9 @@ Result<ByteRaster> FromColors(const cv::Mat& image, const Legend& legend,
 
 Result<ByteRaster> ParsePngMap(std::string_view bytes, const Legend& legend,
                                const std::string& name) {
-  const Result<cv::Mat> image = DecodePng(bytes, name);
+  const Result<Pixels> image = DecodePng(bytes, TerrainMap::kMaxSide, name);
   if (!image.ok()) return image.error();
-  if (image->type() == CV_8UC1) return ToRaster(*image);
+  if (image->order == PixelOrder::kGrey) return ToRaster(*image);
   return FromColors(*image, legend, name);
 }
 

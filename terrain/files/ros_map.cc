@@ -115,10 +115,11 @@ std::uint8_t OccupancyOf(std::uint8_t grey, const Settings& settings) {
 Result<ByteRaster> ReadGreyImage(const std::string& path) {
   const Result<std::string> bytes = ReadWholeFile(path, kMaxImageBytes);
   if (!bytes.ok()) return bytes.error();
-  const Result<cv::Mat> image =
-      IsPng(*bytes) ? DecodePng(*bytes, path) : DecodePgm(*bytes, path);
+  const Result<Pixels> image =
+      IsPng(*bytes) ? DecodePng(*bytes, TerrainMap::kMaxSide, path)
+                    : DecodePgm(*bytes, path);
   if (!image.ok()) return image.error();
-  if (image->type() != CV_8UC1) {
+  if (image->order != PixelOrder::kGrey) {
     return Error{ErrorCode::kUnsupported,
                  path + ": a map_server picture must be 8-bit greyscale"};
   }

@@ -10,6 +10,7 @@
 #include "benchmark/run.h"
 #include "terrain/files/image.h"
 #include "tests/support/error_message.h"
+#include "tests/support/mat_png.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::benchmark {
@@ -46,7 +47,8 @@ class PanelsTest : public ::testing::Test {
 
   void Write(const std::string& name, const cv::Mat& image) {
     fs::create_directories(fs::path(folder_.Path(name)).parent_path());
-    ASSERT_TRUE(WritePng(image, folder_.Path(name)).ok());
+    ASSERT_TRUE(
+        WritePng(terra::testing::ViewOf(image), folder_.Path(name)).ok());
   }
 
   Result<std::vector<Panel>> Make(const std::string& frames) {
@@ -64,7 +66,7 @@ TEST_F(PanelsTest, AFrameStandsAboveItsMask) {
   ASSERT_TRUE(panels.ok()) << ErrorMessage(panels);
   ASSERT_EQ(panels->size(), 1U);
   EXPECT_THAT(panels->at(0).caption, HasSubstr("creek_00001: baseline "));
-  const cv::Mat image = DecodePng(panels->at(0).png, "panel").value();
+  const cv::Mat image = terra::testing::DecodeMat(panels->at(0).png);
   ASSERT_EQ(image.size(), cv::Size(400, 480));
   EXPECT_EQ(image.at<cv::Vec3b>(1, 1), cv::Vec3b(10, 20, 30));
   EXPECT_EQ(image.at<cv::Vec3b>(240 + 1, 1), cv::Vec3b(255, 0, 0));
@@ -77,7 +79,8 @@ TEST_F(PanelsTest, AFrameStandsAboveItsMask) {
 TEST_F(PanelsTest, WithoutFramesTheMaskStandsAlone) {
   const auto panels = Make("");
   ASSERT_TRUE(panels.ok()) << ErrorMessage(panels);
-  EXPECT_EQ(DecodePng(panels->at(0).png, "panel")->size(), cv::Size(400, 240));
+  EXPECT_EQ(terra::testing::DecodeMat(panels->at(0).png).size(),
+            cv::Size(400, 240));
 }
 
 TEST_F(PanelsTest, AFrameOfAnotherSizeIsRefused) {

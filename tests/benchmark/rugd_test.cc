@@ -13,6 +13,7 @@
 #include "terrain/files/map_file.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/error_message.h"
+#include "tests/support/mat_png.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::benchmark {
@@ -37,7 +38,7 @@ class RugdTest : public ::testing::Test {
   void Write(const std::string& name, const cv::Mat& image) {
     const std::string path = folder_.Path("masks/" + name);
     fs::create_directories(fs::path(path).parent_path());
-    ASSERT_TRUE(WritePng(image, path).ok());
+    ASSERT_TRUE(WritePng(terra::testing::ViewOf(image), path).ok());
   }
   RugdOptions Options() {
     RugdOptions options;

@@ -13,6 +13,7 @@
 #include "terrain/files/image.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/child_process.h"
+#include "tests/support/mat_png.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::benchmark {
@@ -34,8 +35,9 @@ class BenchScript : public ::testing::Test {
     cv::Mat mask(550, 688, CV_8UC3, cv::Scalar(255, 0, 0));
     mask.rowRange(250, 550).setTo(cv::Scalar(0, 102, 0));
     fs::create_directories(folder_.Path("masks/creek"));
-    ASSERT_TRUE(
-        WritePng(mask, folder_.Path("masks/creek/creek_00001.png")).ok());
+    ASSERT_TRUE(WritePng(terra::testing::ViewOf(mask),
+                         folder_.Path("masks/creek/creek_00001.png"))
+                    .ok());
   }
 
   RunResult Run(const std::vector<std::string>& options) const {

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "terrain/files/image.h"
 #include "terrain/segment.h"
 #include "tests/support/error_message.h"
+#include "tests/support/mat_png.h"
 #include "tests/support/random_map.h"
 #include "tests/support/temp_folder.h"
 
@@ -27,7 +27,7 @@ cv::Mat Drawn(const TerrainMap& map, const PictureOptions& options) {
   const std::string path = folder.Path("p.png");
   const Status written = WritePicture(map, options, path);
   EXPECT_TRUE(written.ok()) << ErrorMessage(written);
-  return DecodePng(testing::ReadBytes(path), path).value();
+  return testing::DecodeMat(testing::ReadBytes(path));
 }
 
 Color PixelAt(const cv::Mat& image, int x, int y) {

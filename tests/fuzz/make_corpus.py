@@ -40,13 +40,15 @@ def datagram(payload, channel="TERRA_ADVICE"):
     return b"LC02" + struct.pack(">I", 7) + channel.encode() + b"\0" + payload
 
 
-def png(width, height, color, rows):
-    def chunk(kind, data):
-        crc = zlib.crc32(kind + data)
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", crc)
-    head = struct.pack(">IIBBBBB", width, height, 8, color, 0, 0, 0)
+def chunk(kind, data):
+    crc = zlib.crc32(kind + data)
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", crc)
+
+
+def png(width, height, color, rows, depth=8, interlace=0, extra=b""):
+    head = struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, interlace)
     raw = b"".join(b"\0" + row for row in rows)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) +
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + extra +
             chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
 
 
@@ -64,6 +66,18 @@ save("advice", "other_channel", datagram(advice([]), "TERRA_POSE"))
 
 save("map_files", "ids", b"\0" + png(3, 2, 0, [b"\0\1\2", b"\3\4\5"]))
 save("map_files", "colours", b"\0" + png(1, 1, 2, [b"\0\0\0"]))
+save("map_files", "interlaced",
+     b"\0" + png(2, 2, 0, [b"\1", b"\2", b"\3\4"], interlace=1))
+save("map_files", "palette",
+     b"\0" + png(1, 1, 3, [b"\0"], extra=chunk(b"PLTE", b"\1\2\3")))
+save("map_files", "sixteen_bits", b"\0" + png(1, 1, 0, [b"\0\0"], depth=16))
+save("map_files", "transparent",
+     b"\0" + png(1, 1, 0, [b"\0"], extra=chunk(b"tRNS", b"\0\0")))
+save("map_files", "texts_and_profiles", b"\0" + png(
+    1, 1, 0, [b"\0"],
+    extra=chunk(b"gAMA", struct.pack(">I", 20000)) +
+    chunk(b"iCCP", b"p\0\0" + zlib.compress(b"profile")) +
+    chunk(b"zTXt", b"k\0\0" + zlib.compress(b"text"))))
 save("map_files", "movingai",
      b"\1type octile\nheight 2\nwidth 3\nmap\n.@.\nTSW\n")
 save("map_files", "pgm", b"\2P5\n# c\n3 2\n255\n\0\1\2\3\4\5")

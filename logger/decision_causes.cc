@@ -27,6 +27,13 @@ BaselineEvent AnswerOf(std::int64_t planner, std::int64_t request_id) {
   return answer;  // For map 0, so that nothing else comes of it.
 }
 
+BaselineEvent NoBaseline(std::int64_t request_id, std::int64_t map_id) {
+  BaselineEvent none;
+  none.request_id = request_id;
+  none.map_id = map_id;
+  return none;
+}
+
 }  // namespace
 
 std::int64_t Difference(std::int64_t a, std::int64_t b) {
@@ -127,7 +134,13 @@ void DecisionCauses::WaysToNewMap(const deployed_t& deployed, Ways& ways) {
   if (deployed.map_id == gate_->map_id()) return;  // There is no new one.
   Add({map}, ways);
   const std::int64_t digest = deployed.baseline_digest;
-  if (digest == 0 || digest == gate_->baseline_digest()) return;
+  if (digest == gate_->baseline_digest()) return;
+  if (digest == 0) {
+    // The planner had said that there is no way.
+    return Add(
+        {GateEvents{NoBaseline(deployed.request_id, gate_->map_id())}, map},
+        ways);
+  }
   const std::int64_t planner = later_.PlannerOf(digest, decision_);
   Add({Baseline(digest, planner, ways), map}, ways);
 }
@@ -217,10 +230,9 @@ void DecisionCauses::WaysToStaleBaseline(const verdict_t& verdict,
   if (said != nullptr) {
     Add({held, GateEvents{verifier::ToEvent(said->message)}, advice}, ways);
   }
-  BaselineEvent none;
-  none.request_id = verdict.request_id;
-  none.map_id = verdict.map_id;
-  Add({held, GateEvents{none}, advice}, ways);
+  Add({held, GateEvents{NoBaseline(verdict.request_id, verdict.map_id)},
+       advice},
+      ways);
 }
 
 void DecisionCauses::WaysToJudged(const verdict_t& verdict, const Step& advice,

@@ -138,11 +138,11 @@ ReplayedGate WithoutRoute(const deployed_t& deployed, const StateEvents& state,
   return gate;
 }
 
-// A candidate that a map update left in force, though the baseline it was
-// compared with does not stand, or only just: it is deployed against a baseline
+// A candidate that a map update left in force, though the baseline held does
+// not stand, or only just, or there is none: it is deployed against a baseline
 // made up for it.
 bool IsKeptCandidate(const deployed_t& deployed, const StateEvents& state,
-                     const MapPtr& map, const BaselineEvent& baseline,
+                     const MapPtr& map, const BaselineEvent* baseline,
                      double margin, ReplayedGate& gate) {
   if (deployed.mode != deployed_t::MODE_CANDIDATE) return false;
   const Cell start = {deployed.start_x, deployed.start_y};
@@ -160,9 +160,16 @@ bool IsKeptCandidate(const deployed_t& deployed, const StateEvents& state,
              state.Advice(deployed.map_id, digest)});
   verifier::Deployed kept = gate.deployed();
   kept.baseline_digest = deployed.baseline_digest;
-  kept.baseline_cost = verifier::CheckRoute(*map, baseline.waypoints, start,
-                                            goal, verifier::kBusLimits)
-                           .cost;
+  kept.baseline_cost = kImpassable;
+  if (baseline != nullptr) {
+    kept.baseline_cost = verifier::CheckRoute(*map, baseline->waypoints, start,
+                                              goal, verifier::kBusLimits)
+                             .cost;
+  } else {
+    BaselineEvent none = state.BaselineOf(deployed.map_id, 0, {});
+    none.has_route = false;
+    gate.Hear({none});
+  }
   return TellsTheSame(kept, deployed);
 }
 
@@ -179,7 +186,12 @@ Result<ReplayedGate> GateInState(const deployed_t& deployed,
     return Error{ErrorCode::kNotFound, "the log does not hold all of map " +
                                            std::to_string(deployed.map_id)};
   }
+  ReplayedGate kept = fresh;
   if (deployed.baseline_digest == 0 || !map) {
+    if (map &&
+        IsKeptCandidate(deployed, state, map, nullptr, options.margin, kept)) {
+      return kept;
+    }
     ReplayedGate gate = WithoutRoute(deployed, state, map, fresh);
     if (TellsTheSame(gate.deployed(), deployed)) return gate;
     return Differs(deployed, gate.deployed());
@@ -201,8 +213,7 @@ Result<ReplayedGate> GateInState(const deployed_t& deployed,
   }
   gate.Hear({MapEvent{map, deployed.map_id}});
   if (TellsTheSame(gate.deployed(), deployed)) return gate;
-  ReplayedGate kept = fresh;
-  if (IsKeptCandidate(deployed, state, map, baseline, options.margin, kept)) {
+  if (IsKeptCandidate(deployed, state, map, &baseline, options.margin, kept)) {
     return kept;
   }
   return Differs(deployed, gate.deployed());

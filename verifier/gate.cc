@@ -259,17 +259,20 @@ void Gate::RecheckDeployed(Decisions& out) {
   }
 }
 
-// A candidate is named with the baseline it was compared with on this map.
+// A candidate is named with the baseline held, and what that costs on this map:
+// infinity where it is blocked. One that is not what its digest says would be
+// mistaken for another, so none is named then.
 void Gate::KeepOnNewMap(double cost, Decisions& out) {
   Deployed next = deployed_;
   next.cause = Cause::kMapUpdate;
   next.cost = cost;
   if (next.mode == Mode::kBaseline) {
     next.baseline_cost = cost;
-  } else if (baseline_valid()) {
+  } else if (baseline_ && baseline_->check.code != Code::kMalformedMessage) {
     next.baseline_digest = baseline_->message.baseline_digest;
     next.baseline_cost = baseline_->check.cost;
   } else {
+    next.baseline_digest = 0;
     next.baseline_cost = kImpassable;
   }
   Deploy(std::move(next), out);

@@ -1,6 +1,7 @@
 #include "logger/audit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "logger/recorder.h"
+#include "terrain/builtin_legends.h"
 #include "tests/logger/recorded_run.h"
 
 namespace terra::logger {
@@ -320,6 +322,96 @@ TEST(Audit, AForgedStateThatALogBeginsWithIsAMismatch) {
   forged.deployed_cost -= 1;
   messages.back().bytes = bus::Encode(forged);
   EXPECT_FALSE(AuditOf(messages).clean());
+}
+
+// All inputs, and of what the gate said only this.
+Messages BeginningWith(const deployed_t& deployed, Messages messages) {
+  std::erase_if(messages, [](const bus::RawMessage& message) {
+    return message.channel == bus::Channel::kVerdict ||
+           message.channel == bus::Channel::kDeployed;
+  });
+  messages.push_back({bus::Channel::kDeployed, bus::Encode(deployed)});
+  return messages;
+}
+
+// Whatever a DEPLOYED says follows from the inputs that it names, so a log may
+// begin with any of them.
+TEST(Audit, EachDeployedMayBeTheFirst) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const Messages messages = RandomRun(seed);
+    std::int64_t last = 0;
+    for (const deployed_t& deployed : Said<deployed_t>(messages)) {
+      if (deployed.decision == last) continue;
+      last = deployed.decision;
+      const Audit audit = AuditOf(BeginningWith(deployed, messages));
+      EXPECT_TRUE(audit.clean())
+          << "seed " << seed << ", decision " << last << ": " << Text(audit);
+    }
+  }
+}
+
+// A baseline that came after a map's change and is dearer than the candidate is
+// held without a decision. When the next map blocks it, the candidate that
+// stays names it.
+TEST(Audit, ACandidateMayStayBesideABlockedBaselineThatWasNeverDeployed) {
+  const TerrainMap walled = RecordedRun::BarMap(11);
+  RecordedRun run;
+  run.SaveMap(walled);
+  run.Run(std::chrono::seconds(3));
+  run.Ask(21);
+  const Route close_by = {
+      RecordedRun::kStart, {40, 40}, {69, 29}, {90, 29}, RecordedRun::kGoal};
+  run.Advise(run.Baseline().value(), close_by);
+  ASSERT_EQ(LastCode(run), verdict_t::CODE_ACCEPTED);
+  // A strip that is worth crossing.
+  ByteRaster ids = ByteRaster::Zero(120, 160);
+  ids.block(30, 70, 90, 14).setConstant(1);
+  run.SaveMap(
+      TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value());
+  run.Run(std::chrono::seconds(3));
+  const std::int64_t across = run.Baseline().value().baseline_digest;
+  ASSERT_NE(run.Deployed()->baseline_digest, across);
+  run.SaveMap(walled);
+  run.Run(std::chrono::milliseconds(1'500));
+  const auto deployed = Said<deployed_t>(run.messages());
+  const auto kept =
+      std::ranges::find(deployed, across, &deployed_t::baseline_digest);
+  ASSERT_NE(kept, deployed.end());
+  EXPECT_EQ(kept->mode, deployed_t::MODE_CANDIDATE);
+  EXPECT_EQ(kept->cause, deployed_t::CAUSE_MAP_UPDATE);
+  EXPECT_TRUE(std::isnan(kept->baseline_cost));
+  EXPECT_TRUE(AuditOf(run.messages()).clean()) << Text(AuditOf(run.messages()));
+  EXPECT_TRUE(AuditOf(BeginningWith(*kept, run.messages())).clean())
+      << Text(AuditOf(BeginningWith(*kept, run.messages())));
+}
+
+// The planner found no way on the map before, so no baseline is held.
+TEST(Audit, ACandidateMayStayWithoutABaseline) {
+  // A wall with a hole that no edge of the lattice goes through.
+  const auto hole_at = [](int x) {
+    ByteRaster ids = ByteRaster::Zero(120, 160);
+    ids.block(0, x, 120, 10).setConstant(11);
+    ids.block(27, x, 5, 10).setConstant(0);
+    return TerrainMap::Create(std::move(ids), MultiTerraPathLegend()).value();
+  };
+  RecordedRun run;
+  run.Ask(21);
+  run.Advise(
+      run.Baseline().value(),
+      {RecordedRun::kStart, {40, 40}, {69, 29}, {90, 29}, RecordedRun::kGoal});
+  ASSERT_EQ(LastCode(run), verdict_t::CODE_ACCEPTED);
+  for (const int x : {72, 76}) {
+    run.SaveMap(hole_at(x));
+    run.Run(std::chrono::seconds(3));
+    ASSERT_EQ(run.Baseline()->status, terra_msg::baseline_t::STATUS_NO_ROUTE);
+  }
+  const deployed_t kept = run.Deployed().value();
+  EXPECT_EQ(kept.mode, deployed_t::MODE_CANDIDATE);
+  EXPECT_EQ(kept.baseline_digest, 0);
+  EXPECT_TRUE(std::isnan(kept.baseline_cost));
+  EXPECT_TRUE(AuditOf(run.messages()).clean()) << Text(AuditOf(run.messages()));
+  EXPECT_TRUE(AuditOf(BeginningWith(kept, run.messages())).clean())
+      << Text(AuditOf(BeginningWith(kept, run.messages())));
 }
 
 // An advisor that says two things under one name is no fault of the gate, if

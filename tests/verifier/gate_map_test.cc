@@ -1,4 +1,5 @@
 // Another map comes into force.
+#include <functional>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -68,6 +69,40 @@ TEST(GateTest, ACandidateOnABlockedBaselineStaysWithoutAComparison) {
   EXPECT_EQ(deployed.mode, Mode::kCandidate);
   EXPECT_EQ(deployed.cause, Cause::kMapUpdate);
   EXPECT_EQ(deployed.baseline_cost, kImpassable);
+}
+
+// The one held, which was dearer and so never deployed, not the one that the
+// candidate was once compared with.
+TEST(GateTest, ACandidateThatStaysNamesTheBaselineHeld) {
+  GateHarness h = Ready();
+  h.Advise(kTop);
+  h.Baseline(kBottom);
+  h.Map(MapFromAscii({"111111", "155551", "1#1111"}));
+  EXPECT_EQ(h.deployed().mode, Mode::kCandidate);
+  EXPECT_EQ(h.deployed().waypoints, kTop);
+  EXPECT_EQ(h.deployed().baseline_digest, h.baseline_digest);
+  EXPECT_EQ(h.deployed().baseline_cost, kImpassable);
+}
+
+TEST(GateTest, ACandidateThatStaysWithoutABaselineNamesNone) {
+  const auto no_route = [](GateHarness& h) {
+    h.NoRoute();
+  };
+  const auto forged = [](GateHarness& h) {
+    BaselineEvent event = h.BaselineOf(kStraight);
+    ++event.baseline_digest;
+    h.gate.On(event);
+  };
+  for (const auto& lose : {std::function<void(GateHarness&)>(no_route),
+                           std::function<void(GateHarness&)>(forged)}) {
+    GateHarness h = Ready();
+    h.Advise(kTop);
+    lose(h);
+    h.Map(MapFromAscii({"122221", "155551"}));
+    EXPECT_EQ(h.deployed().mode, Mode::kCandidate);
+    EXPECT_EQ(h.deployed().baseline_digest, 0);
+    EXPECT_EQ(h.deployed().baseline_cost, kImpassable);
+  }
 }
 
 TEST(GateTest, NothingValidOnTheNewMapMeansHold) {

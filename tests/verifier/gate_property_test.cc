@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "terrain/digest.h"
 #include "tests/verifier/gate_oracle.h"
 #include "tests/verifier/gate_trace.h"
+#include "verifier/verify.h"
 
 namespace terra::verifier {
 namespace {
@@ -206,6 +208,37 @@ RC_GTEST_PROP(GatePropertyTest, OnlyWhatThePlannerSaidIsDeployedAsBaseline,
       RC_ASSERT(found != said.end());
       RC_ASSERT(found->second.request_id == deployed.request_id);
       RC_ASSERT(found->second.waypoints == deployed.waypoints);
+    }
+  }
+}
+
+// Whoever checks a DEPLOYED looks up the baseline that it names.
+RC_GTEST_PROP(GatePropertyTest, TheBaselineThatIsNamedCostsWhatIsSaid, ()) {
+  std::map<std::int64_t, BaselineEvent> said;
+  std::map<std::int64_t, std::shared_ptr<const TerrainMap>> maps;
+  for (const Turn& turn : AnyTrace()) {
+    if (const auto* event = std::get_if<MapEvent>(&turn.event)) {
+      maps[event->map_id] = event->map;
+    }
+    if (const auto* event = std::get_if<BaselineEvent>(&turn.event)) {
+      const bool honest =
+          event->baseline_digest ==
+          BaselineDigest(event->request_id, event->map_id, event->waypoints);
+      if (honest) said[event->baseline_digest] = *event;
+    }
+    for (const Deployed& deployed : Deployments(turn.decisions)) {
+      if (!deployed.has_route()) continue;
+      if (deployed.baseline_digest == 0) {
+        RC_ASSERT(deployed.mode == Mode::kCandidate);
+        RC_ASSERT(deployed.baseline_cost == kImpassable);
+        continue;
+      }
+      const auto found = said.find(deployed.baseline_digest);
+      RC_ASSERT(found != said.end());
+      const RouteCheck check =
+          CheckRoute(*maps.at(deployed.map_id), found->second.waypoints,
+                     deployed.start, deployed.goal, kBusLimits);
+      RC_ASSERT(deployed.baseline_cost == check.cost);
     }
   }
 }

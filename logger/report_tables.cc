@@ -65,14 +65,11 @@ std::string RequestTable(const std::vector<RequestStory>& stories) {
 }
 
 std::string VerdictTable(const LogContents& contents) {
-  std::vector<const Logged<LogContents::Decided>*> verdicts;
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      if (std::holds_alternative<verdict_t>(logged.message)) {
-        verdicts.push_back(&logged);
-      }
-    }
-  }
+  std::vector<const Logged<LogContents::Decided>*> verdicts =
+      contents.DecisionsInOrder();
+  std::erase_if(verdicts, [](const auto* logged) {
+    return !std::holds_alternative<verdict_t>(logged->message);
+  });
   std::vector<std::vector<std::string>> rows;
   const std::size_t first =
       verdicts.size() > kMaxRows ? verdicts.size() - kMaxRows : 0;

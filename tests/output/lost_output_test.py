@@ -87,7 +87,7 @@ def that_write(bin_folder, examples, folder):
             "--seed", "1", "--out", data], data / "cases.csv")
     yield ([terra, "bench", "gap", "--dataset", data, "--strides", "50",
             "--out", folder / "gap.csv"], folder / "gap.csv")
-    yield ([terra, "bench", "run", "--dataset", data, "--method", "baseline",
+    yield ([terra, "bench", "run", "--dataset", data, "--method", "coarse",
             "--out", folder / "run"], None)
 
 

@@ -223,7 +223,7 @@ TEST(HeartbeatTest, TellsAChangedStateAtOnceAndElseOnceASecond) {
   Outbox out(*bus, 7);
   Heartbeat heartbeat("test", "", out, *bus, inbox);
   StateNode node;
-  const auto sent_at = [&](milliseconds at) {
+  const auto sent_at = [&](milliseconds at) -> std::int64_t {
     heartbeat.Advance(node, Time(at));
     return bus->counters().sent;
   };

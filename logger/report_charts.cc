@@ -195,8 +195,9 @@ void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
   for (const auto& [name, all] : by_name) {
     lanes.Begin(name + " alive");
     for (const auto* status : all) {
-      const bool ready = status->message.state.starts_with("ready");
-      lanes.Tick(status->time_us, ready ? kCandidateColor : kBadColor);
+      lanes.Tick(status->time_us, DoesItsWork(status->message.state)
+                                      ? kCandidateColor
+                                      : kBadColor);
     }
   }
 }

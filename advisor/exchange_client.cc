@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "advisor/interruptible_wait.h"
+#include "output/output_file.h"
 
 namespace terra::advisor {
 namespace {
@@ -18,17 +19,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uintmax_t kMaxAnswerBytes = 1u << 20;
 
-/// Writes under another name first, so that nobody reads half a file.
-bool WriteWhole(const fs::path& path, const std::string& content) {
-  const fs::path part = path.string() + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << content;
-  file.close();
-  std::error_code failed;
-  fs::rename(part, path, failed);
-  return file.good() && !failed;
-}
-
 constexpr const char* kReadme =
     "Each folder here is a question to a language model, for a person or a\n"
     "program to answer: image-1.png and so on, and prompt.txt, which comes\n"
@@ -37,23 +27,28 @@ constexpr const char* kReadme =
     "rename it. A question that has its answer is not asked again: remove\n"
     "answer.txt to change one.\n";
 
-bool WriteQuestion(const fs::path& folder, const LlmRequest& request) {
+// Each file whole or not at all, so that nobody reads half a question.
+Status WriteQuestion(const fs::path& folder, const LlmRequest& request) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  bool written = !failed;
-  int number = 0;
-  for (const auto& picture : request.pictures) {
-    written =
-        written &&
-        WriteWhole(folder / ("image-" + std::to_string(++number) + ".png"),
-                   picture->png);
+  if (failed) {
+    return Error{ErrorCode::kUnavailable,
+                 folder.string() + ": " + failed.message()};
   }
   const fs::path readme = folder.parent_path() / "README.txt";
   if (!fs::exists(readme, failed)) {
-    written = written && WriteWhole(readme, kReadme);
+    const Status written = WriteWholeFile(readme.string(), kReadme);
+    if (!written.ok()) return written;
+  }
+  int number = 0;
+  for (const auto& picture : request.pictures) {
+    const std::string name = "image-" + std::to_string(++number) + ".png";
+    const Status written =
+        WriteWholeFile((folder / name).string(), picture->png);
+    if (!written.ok()) return written;
   }
   // Last, so that who sees it finds the pictures too.
-  return written && WriteWhole(folder / "prompt.txt", request.text);
+  return WriteWholeFile((folder / "prompt.txt").string(), request.text);
 }
 
 /// Size of the answer file; none while it is missing or empty.
@@ -96,10 +91,13 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
   const fs::path folder =
       fs::path(options_.folder) / ExchangeName(identity_, request);
   const fs::path answer = folder / "answer.txt";
-  if (!AnswerSize(answer) && !WriteQuestion(folder, request)) {
-    reply.reason = NoAnswer::kTransport;
-    reply.error = folder.string() + ": the question cannot be written";
-    return reply;
+  if (!AnswerSize(answer)) {
+    const Status asked = WriteQuestion(folder, request);
+    if (!asked.ok()) {
+      reply.reason = NoAnswer::kTransport;
+      reply.error = "the question cannot be asked: " + asked.error().message;
+      return reply;
+    }
   }
   reply.tries = 1;
   std::optional<std::uintmax_t> before;

@@ -1,5 +1,7 @@
 #include "advisor/recording.h"
 
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <functional>
@@ -10,6 +12,7 @@
 
 #include "advisor/encoding.h"
 #include "advisor/wire_json.h"
+#include "output/output_file.h"
 
 namespace terra::advisor {
 namespace {
@@ -96,20 +99,22 @@ Result<std::ofstream> OpenRecording(const std::string& path) {
   std::ofstream file(path, std::ios::app | std::ios::binary);
   if (!file || failed) {
     return Error{ErrorCode::kUnavailable,
-                 path + ": the recording cannot be written"};
+                 path + ": the recording cannot be written: " +
+                     (failed ? failed.message() : std::strerror(errno))};
   }
   return file;
 }
 
-void KeepImages(const LlmRequest& request, const std::string& folder) {
+Status KeepImages(const LlmRequest& request, const std::string& folder) {
   for (const auto& picture : request.pictures) {
     const std::filesystem::path path =
         std::filesystem::path(folder) / (Sha256Hex(picture->png) + ".png");
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-      std::ofstream(path, std::ios::binary) << picture->png;
-    }
+    if (std::filesystem::exists(path, ignored)) continue;
+    const Status written = WriteWholeFile(path.string(), picture->png);
+    if (!written.ok()) return written;
   }
+  return Done{};
 }
 
 std::string FormatRecord(const LlmIdentity& identity, const LlmRequest& request,

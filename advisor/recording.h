@@ -61,6 +61,7 @@ Result<std::unordered_set<std::string>> ReadRecordKeys(const std::string& path);
 Result<std::ofstream> OpenRecording(const std::string& path);
 
 /// Writes the pictures of a request into a folder, under their hash.
-void KeepImages(const LlmRequest& request, const std::string& folder);
+/// Errors: one cannot be written.
+Status KeepImages(const LlmRequest& request, const std::string& folder);
 
 }  // namespace terra::advisor

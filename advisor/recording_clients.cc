@@ -16,11 +16,12 @@ Result<std::unique_ptr<LlmClient>> RecordingClient::Create(
     image_folder = path + ".images";
     std::filesystem::create_directories(image_folder, failed);
   }
-  auto file = OpenRecording(path);
-  if (failed || !file) {
+  if (failed) {
     return Error{ErrorCode::kUnavailable,
-                 path + ": the recording cannot be written"};
+                 image_folder + ": " + failed.message()};
   }
+  auto file = OpenRecording(path);
+  if (!file) return file.error();
   return std::unique_ptr<LlmClient>(std::make_unique<RecordingClient>(
       std::move(inner), *std::move(file), std::move(image_folder)));
 }
@@ -34,12 +35,15 @@ RecordingClient::RecordingClient(std::unique_ptr<LlmClient> inner,
 LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
   LlmReply reply = inner_->Ask(request, stop);
   if (reply.came()) {
-    if (!image_folder_.empty()) KeepImages(request, image_folder_);
+    const Status kept = image_folder_.empty()
+                            ? Status(Done{})
+                            : KeepImages(request, image_folder_);
     file_ << FormatRecord(identity(), request, reply, UtcNow()) << std::flush;
-    if (!file_) {
+    if (!kept.ok() || !file_) {
       // The answer is still good; that it was not kept must not stay unseen.
       reply.error += reply.error.empty() ? "" : "; ";
-      reply.error += "the recording could not be written";
+      reply.error += kept.ok() ? "the recording could not be written"
+                               : kept.error().message;
       file_.clear();
     }
   }

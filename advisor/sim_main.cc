@@ -15,7 +15,8 @@
 #include "advisor/sim_answer.h"
 #include "advisor/sim_wire.h"
 #include "bus/number_range.h"
-#include "terrain/files/whole_file.h"
+#include "output/output_file.h"
+#include "output/standard_output.h"
 
 namespace {
 
@@ -74,10 +75,15 @@ int Serve(int port, const std::string& port_file, double latency_s) {
       return 1;
     }
   }
+  std::cout << "http://" << host << ":" << bound << "\n";
+  const auto said = terra::FlushStandardOutput();
+  if (!said) {  // Nobody would know where it listens.
+    std::cerr << "terra-llm-sim: " << said.error().message << "\n";
+    return 1;
+  }
   std::thread serving([&server] {
     server.listen_after_bind();
   });
-  std::cout << "http://" << host << ":" << bound << std::endl;
   int signal = 0;
   sigwait(&signals, &signal);
   server.stop();
@@ -85,9 +91,7 @@ int Serve(int port, const std::string& port_file, double latency_s) {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Run(int argc, char** argv) {
   CLI::App app{
       "A local server that plays a language model: it answers questions about "
       "terrain maps from their own text and picture. Its answers say nothing "
@@ -109,4 +113,11 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   return Serve(port, port_file, latency_s);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  terra::ReserveStandardStreams();
+  return terra::FinishStandardOutput("terra-llm-sim", Run(argc, argv));
 }

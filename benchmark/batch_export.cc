@@ -1,7 +1,6 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <unordered_set>
@@ -13,6 +12,7 @@
 #include "benchmark/batch.h"
 #include "benchmark/llm_method.h"
 #include "benchmark/progress.h"
+#include "output/output_file.h"
 #include "planner/coarse_lattice.h"
 
 namespace terra::benchmark {
@@ -23,10 +23,6 @@ using advisor::BatchForm;
 using advisor::LlmIdentity;
 using advisor::LlmRequest;
 using advisor::WireFormat;
-
-Error CannotWrite(const std::string& path) {
-  return {ErrorCode::kUnavailable, path + ": cannot be written"};
-}
 
 // The files for the provider: a new one when the next item would not fit.
 class RequestFiles {
@@ -42,40 +38,47 @@ class RequestFiles {
       const Status finished = Finish();
       if (!finished) return finished;
     }
+    if (count_ == 0) {
+      const Status begun = Begin();
+      if (!begun) return begun;
+    }
     Put(count_ == 0 ? form_.head : form_.separator);
     Put(item);
     ++count_;
-    return file_ ? Status(Done{}) : CannotWrite(paths_.back());
+    return file_->status();
   }
 
   Status Finish() {
     if (count_ == 0) return Done{};
     Put(form_.tail);
-    file_.close();
     count_ = bytes_ = 0;
-    return file_ ? Status(Done{}) : CannotWrite(paths_.back());
+    return file_->Finish();
   }
 
   const std::vector<std::string>& paths() const { return paths_; }
 
  private:
+  Status Begin() {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "requests-%03zu",
+                  paths_.size() + 1);
+    paths_.push_back((fs::path(folder_) / name.data()).string() +
+                     std::string(form_.extension));
+    Result<OutputFile> file = OutputFile::Create(paths_.back());
+    if (!file) return file.error();
+    file_.emplace(*std::move(file));
+    return Done{};
+  }
+
   void Put(std::string_view text) {
-    if (!file_.is_open()) {
-      std::array<char, 32> name{};
-      std::snprintf(name.data(), name.size(), "requests-%03zu",
-                    paths_.size() + 1);
-      paths_.push_back((fs::path(folder_) / name.data()).string() +
-                       std::string(form_.extension));
-      file_.open(paths_.back(), std::ios::binary | std::ios::trunc);
-    }
-    file_ << text;
+    file_->Write(text);
     bytes_ += text.size();
   }
 
   const std::string folder_;
   const BatchForm& form_;
   std::vector<std::string> paths_;
-  std::ofstream file_;
+  std::optional<OutputFile> file_;
   std::size_t count_ = 0;
   std::size_t bytes_ = 0;
 };
@@ -88,7 +91,7 @@ struct Exporter {
   std::unordered_set<std::string> recorded;
   std::string images;  // Folder; empty = not kept.
   RequestFiles files;
-  std::ofstream open;
+  OutputFile open;
   ExportedBatch counts;
 
   Status Add(const LlmRequest& request) {
@@ -97,8 +100,11 @@ struct Exporter {
       ++counts.left_out;
       return Done{};
     }
-    if (!images.empty()) advisor::KeepImages(request, images);
-    open << advisor::FormatRecord(identity, request, {}, advisor::UtcNow());
+    if (!images.empty()) {
+      const Status kept = advisor::KeepImages(request, images);
+      if (!kept) return kept;
+    }
+    open.Write(advisor::FormatRecord(identity, request, {}, advisor::UtcNow()));
     ++counts.requests;
     return files.Add(advisor::BatchItem(
         *format, advisor::BatchId(hash, request.repeat), request, settings));
@@ -125,6 +131,12 @@ Result<std::unique_ptr<Exporter>> MakeExporter(
       folder.images ? open_path + ".images" : std::string();
   std::error_code failed;
   fs::create_directories(folder.images ? images : folder.path, failed);
+  if (failed) {
+    return Error{ErrorCode::kUnavailable,
+                 folder.path + ": " + failed.message()};
+  }
+  Result<OutputFile> open = OutputFile::Create(open_path);
+  if (!open) return open.error();
   auto made = std::unique_ptr<Exporter>(
       new Exporter{.format = advisor::MakeWireFormat(service.backend),
                    .settings = service.provider.settings,
@@ -132,9 +144,8 @@ Result<std::unique_ptr<Exporter>> MakeExporter(
                    .recorded = *std::move(recorded),
                    .images = images,
                    .files = RequestFiles(folder.path, *form),
-                   .open = std::ofstream(open_path, std::ios::binary),
+                   .open = *std::move(open),
                    .counts = {}});
-  if (failed || !made->open) return CannotWrite(folder.path);
   if (made->settings.model.empty()) {
     made->settings.model = made->format->default_model();
   }
@@ -194,8 +205,9 @@ Result<ExportedBatch> ExportBatch(const DatasetFolder& dataset,
   }
   const Status finished = out.files.Finish();
   if (!finished) return finished.error();
-  out.open.close();
-  if (!out.open) return CannotWrite(folder.path);
+  // Last: with it the folder counts as a whole batch.
+  const Status listed = out.open.Finish();
+  if (!listed) return listed.error();
   out.counts.files = out.files.paths();
   return out.counts;
 }

@@ -15,6 +15,7 @@
 #include "benchmark/map_generator.h"
 #include "benchmark/paper_rows.h"
 #include "benchmark/parallel.h"
+#include "output/standard_output.h"
 
 namespace {
 
@@ -118,10 +119,12 @@ int Run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  terra::ReserveStandardStreams();
+  int exit_code = 1;
   try {
-    return Run(argc, argv);
+    exit_code = Run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "terra-calibrate: %s\n", error.what());
-    return 1;
   }
+  return terra::FinishStandardOutput("terra-calibrate", exit_code);
 }

@@ -1,21 +1,17 @@
 #include "benchmark/gap.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "benchmark/in_order.h"
 #include "benchmark/progress.h"
+#include "output/output_file.h"
 #include "terrain/files/case_reader.h"
 #include "terrain/files/csv.h"
 #include "terrain/native_search.h"
 #include "verifier/verify.h"
 
 namespace terra::benchmark {
-
-namespace fs = std::filesystem;
-
 namespace {
 
 // What is kept of a case until its rows are written.
@@ -41,10 +37,6 @@ std::string RowsOf(const MeasuredCase& c, const std::vector<int>& strides) {
                      FormatNumber(c.gap.oracle_cost)});
   }
   return rows;
-}
-
-Error GapsNotWritten(const std::string& path) {
-  return {ErrorCode::kUnavailable, path + ": cannot be written"};
 }
 
 }  // namespace
@@ -114,9 +106,9 @@ Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
   if (!cases.ok()) return cases.error();
   Progress progress("gap", total);
   GapSummaries summaries(options.strides);
-  const std::string unfinished = path + ".part";
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  file << CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"});
+  Result<OutputFile> file = OutputFile::Create(path);
+  if (!file.ok()) return file.error();
+  file->Write(CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"}));
   InOrder<DatasetCase, MeasuredCase> work(
       [&] {
         return cases->Next();
@@ -127,15 +119,13 @@ Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
       [&](const MeasuredCase& c) -> Status {
         progress.Advance();
         summaries.Add(c.group, c.gap);
-        file << RowsOf(c, options.strides);
-        return file ? Status(Done{}) : GapsNotWritten(path);
+        file->Write(RowsOf(c, options.strides));
+        return file->status();
       });
   const Status measured = work.Run(options.jobs);
   if (!measured.ok()) return measured.error();
-  file.close();
-  std::error_code failed;
-  if (file) fs::rename(unfinished, path, failed);
-  if (!file || failed) return GapsNotWritten(path);
+  const Status written = file->Finish();
+  if (!written.ok()) return written.error();
   return summaries.Rows();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "benchmark/dataset_card.h"
 #include "benchmark/in_order.h"
 #include "benchmark/progress.h"
+#include "output/output_file.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
 #include "terrain/files/csv.h"
@@ -59,21 +61,26 @@ Result<WrittenCase> WriteCase(Subset subset, int index,
                      generated.rejections};
 }
 
-Error TableNotWritten(const fs::path& path) {
-  return {ErrorCode::kUnavailable, path.string() + ": cannot be written"};
-}
-
 // The tables with a line for each case. They grow on disk, not in memory, and
 // get their names when they are whole.
 class CaseTables {
  public:
-  explicit CaseTables(const fs::path& folder)
-      : cases_path_(folder / "cases.csv"),
-        sums_path_(folder / "SHA256SUMS"),
-        cases_(Unfinished(cases_path_), std::ios::binary),
-        map_sums_(MapSumsPath(), std::ios::binary) {
-    AddRow(
+  static Result<std::unique_ptr<CaseTables>> Create(const fs::path& folder) {
+    const fs::path sums_path = folder / "SHA256SUMS";
+    Result<OutputFile> cases =
+        OutputFile::Create((folder / "cases.csv").string());
+    if (!cases.ok()) return cases.error();
+    Result<TemporaryFile> maps =
+        TemporaryFile::Create(sums_path.string() + ".maps", 0600);
+    if (!maps.ok()) {
+      return Error{ErrorCode::kUnavailable,
+                   folder.string() + ": " + maps.error().message};
+    }
+    std::unique_ptr<CaseTables> tables(
+        new CaseTables(sums_path, *std::move(cases), *std::move(maps)));
+    tables->AddRow(
         {"case_id", "map", "start_x", "start_y", "goal_x", "goal_y", "group"});
+    return tables;
   }
 
   // In order of the cases.
@@ -85,8 +92,8 @@ class CaseTables {
             std::string(SubsetName(c.subset))});
     digest_.Add(DigestLine(id, c.map_id, c.start, c.goal));
     map_sums_ << c.map_sha256 << "  " << map << "\n";
-    if (!cases_) return TableNotWritten(cases_path_);
-    return map_sums_ ? Status(Done{}) : TableNotWritten(sums_path_);
+    if (!map_sums_) return MapSumsLost();
+    return cases_.status();
   }
 
   // The dataset's digest; once, when all cases were added.
@@ -96,40 +103,41 @@ class CaseTables {
   // other tables, whose lines are given, then of cases.csv and the maps.
   Status FinishSums(std::string lines) {
     map_sums_.close();
-    lines += cases_sum_.Hex() + "  cases.csv\n";
-    std::ofstream sums(Unfinished(sums_path_), std::ios::binary);
-    sums << lines << std::ifstream(MapSumsPath(), std::ios::binary).rdbuf();
-    sums.close();
-    std::error_code failed;
-    fs::remove(MapSumsPath(), failed);
-    if (!failed) fs::rename(Unfinished(sums_path_), sums_path_, failed);
-    return map_sums_ && sums && !failed ? Status(Done{})
-                                        : TableNotWritten(sums_path_);
+    if (!map_sums_) return MapSumsLost();
+    Result<OutputFile> sums = OutputFile::Create(sums_path_.string());
+    if (!sums.ok()) return sums.error();
+    sums->Write(lines + cases_sum_.Hex() + "  cases.csv\n");
+    std::ifstream of_maps(map_sums_file_.path(), std::ios::binary);
+    for (std::string line; std::getline(of_maps, line);) {
+      sums->Write(line + "\n");
+    }
+    return sums->Finish();
   }
 
   // Names cases.csv.
-  Status FinishCases() {
-    cases_.close();
-    std::error_code failed;
-    fs::rename(Unfinished(cases_path_), cases_path_, failed);
-    return cases_ && !failed ? Status(Done{}) : TableNotWritten(cases_path_);
-  }
+  Status FinishCases() { return cases_.Finish(); }
 
  private:
-  static fs::path Unfinished(const fs::path& path) {
-    return path.string() + ".part";
+  CaseTables(fs::path sums_path, OutputFile cases, TemporaryFile map_sums)
+      : sums_path_(std::move(sums_path)),
+        cases_(std::move(cases)),
+        map_sums_file_(std::move(map_sums)),
+        map_sums_(map_sums_file_.path(), std::ios::binary) {}
+
+  Error MapSumsLost() const {
+    return {ErrorCode::kUnavailable,
+            map_sums_file_.path() + ": cannot be written"};
   }
-  fs::path MapSumsPath() const { return sums_path_.string() + ".maps.part"; }
 
   void AddRow(const std::vector<std::string>& fields) {
     const std::string line = CsvLine(fields);
     cases_sum_.Add(line);
-    cases_ << line;
+    cases_.Write(line);
   }
 
-  const fs::path cases_path_;
   const fs::path sums_path_;
-  std::ofstream cases_;
+  OutputFile cases_;
+  TemporaryFile map_sums_file_;  // The maps' lines until the others are known.
   std::ofstream map_sums_;
   advisor::Sha256 cases_sum_;
   advisor::Sha256 digest_;
@@ -276,20 +284,21 @@ Result<std::string> GenerateDataset(const GenerateOptions& options,
                                     const std::string& folder) {
   const Status prepared = PrepareFolder(folder);
   if (!prepared.ok()) return prepared.error();
-  CaseTables tables(folder);
+  const auto tables = CaseTables::Create(folder);
+  if (!tables.ok()) return tables.error();
   std::vector<Rejections> rejections;
   for (const Subset subset : options.subsets) {
-    const auto rejected = WriteSubset(subset, options, folder, tables);
+    const auto rejected = WriteSubset(subset, options, folder, **tables);
     if (!rejected.ok()) return rejected.error();
     rejections.push_back(*rejected);
   }
-  std::string digest = tables.Digest();
+  std::string digest = (*tables)->Digest();
   const auto sums = WriteSmallTables(DatasetJson(options, rejections, digest),
                                      DatasetCard(options), folder);
   if (!sums.ok()) return sums.error();
-  const Status summed = tables.FinishSums(*sums);
+  const Status summed = (*tables)->FinishSums(*sums);
   if (!summed.ok()) return summed.error();
-  const Status finished = tables.FinishCases();
+  const Status finished = (*tables)->FinishCases();
   if (!finished.ok()) return finished.error();
   return digest;
 }

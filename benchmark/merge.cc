@@ -9,6 +9,7 @@
 #include "benchmark/case_result.h"
 #include "benchmark/results_reader.h"
 #include "benchmark/run_description.h"
+#include "output/output_file.h"
 
 namespace terra::benchmark {
 namespace {
@@ -114,27 +115,28 @@ Result<std::int64_t> CopyRows(const std::vector<ShardRows>& shards,
     files.emplace_back(ResultsPath(shard.folder), std::ios::binary);
     std::getline(files.back(), header);  // The same in all.
   }
-  const std::string unfinished = path + ".part";
-  std::ofstream to(unfinished, std::ios::binary | std::ios::trunc);
-  to << header << "\n";
+  Result<OutputFile> to = OutputFile::Create(path);
+  if (!to.ok()) return to.error();
+  to->Write(header + "\n");
   const RunDescription& whole = shards.front().description;
   std::int64_t rows = 0;
   std::string line;
   for (std::int64_t i = 0; i < whole.num_cases; ++i) {
-    std::ifstream& from = files[static_cast<std::size_t>(i) % files.size()];
+    const std::size_t shard = static_cast<std::size_t>(i) % files.size();
+    std::ifstream& from = files[shard];
     for (int repeat = 0; repeat < whole.repeats; ++repeat, ++rows) {
       std::getline(from, line);
-      to << line << "\n";
+      if (!from) {
+        return Error{
+            ErrorCode::kUnavailable,
+            ResultsPath(shards[shard].folder) + ": cannot be read to its end"};
+      }
+      to->Write(line + "\n");
     }
-    if (!from) break;
   }
-  to.close();
-  std::error_code failed;
-  if (to && rows == whole.num_cases * whole.repeats) {
-    fs::rename(unfinished, path, failed);
-    if (!failed) return rows;
-  }
-  return Error{ErrorCode::kUnavailable, path + ": cannot be written"};
+  const Status written = to->Finish();
+  if (!written.ok()) return written.error();
+  return rows;
 }
 
 RunDescription MergedDescription(const std::vector<ShardRows>& shards) {

@@ -15,7 +15,7 @@
 #include "benchmark/rugd.h"
 #include "benchmark/run_labels.h"
 #include "benchmark/switch_tables.h"
-#include "terrain/files/whole_file.h"
+#include "output/output_file.h"
 
 namespace terra::benchmark {
 namespace {

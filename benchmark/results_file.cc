@@ -11,6 +11,8 @@
 
 #include <sys/file.h>
 
+#include "output/output_file.h"
+
 namespace terra::benchmark {
 namespace {
 
@@ -83,21 +85,15 @@ Status ResultsFile::Lock() {
 Status ResultsFile::Rewrite(
     const SortedParts& parts,
     const std::function<bool(const OrderedRow&)>& wanted) {
-  const std::string temporary = path_ + ".part";
-  {
-    std::ofstream to(temporary, std::ios::binary | std::ios::trunc);
-    to << ResultsHeader(columns_);
-    const Status merged = MergeSortedParts(path_, parts, cases_, repeats_,
-                                           [&](const OrderedRow& row) {
-                                             if (wanted(row)) to << row.line;
-                                           });
-    if (!merged.ok()) return merged;
-    if (!to.flush()) return SystemError(temporary, "cannot be written");
-  }
-  if (std::rename(temporary.c_str(), path_.c_str()) != 0) {
-    return SystemError(path_, "cannot be replaced");
-  }
-  return Done{};
+  Result<OutputFile> to = OutputFile::Create(path_);
+  if (!to.ok()) return to.error();
+  to->Write(ResultsHeader(columns_));
+  const Status merged = MergeSortedParts(path_, parts, cases_, repeats_,
+                                         [&](const OrderedRow& row) {
+                                           if (wanted(row)) to->Write(row.line);
+                                         });
+  if (!merged.ok()) return merged;
+  return to->Finish();
 }
 
 Status ResultsFile::Recover() {

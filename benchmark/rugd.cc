@@ -12,13 +12,13 @@
 #include "benchmark/generate_dataset.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
+#include "output/output_file.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/digest.h"
 #include "terrain/files/csv.h"
 #include "terrain/files/dataset.h"
 #include "terrain/files/legend_file.h"
 #include "terrain/files/map_file.h"
-#include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
 namespace {

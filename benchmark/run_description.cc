@@ -10,6 +10,7 @@
 
 #include "advisor/wire_json.h"
 #include "benchmark/parallel.h"
+#include "output/output_file.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <csignal>
 #include <system_error>
+#include <utility>
 
 #include <sys/signalfd.h>
 
@@ -68,12 +69,17 @@ void EventLoop::Every(Duration period, Handler handle) {
   timers_.push_back(Timer{Periodic(period), std::move(handle)});
 }
 
+void EventLoop::AfterTurn(std::function<Time(Time)> look) {
+  after_turn_.push_back(std::move(look));
+}
+
 Time EventLoop::RunTimers(Time now) {
   Time next = kNever;
   for (Timer& timer : timers_) {
     if (timer.period.Due(now)) timer.handle(now);
     next = std::min(next, timer.period.next());
   }
+  for (const auto& look : after_turn_) next = std::min(next, look(now));
   return next;
 }
 

@@ -46,6 +46,10 @@ class EventLoop {
   /// Calls `handle` at once and then once a period.
   void Every(Duration period, Handler handle);
 
+  /// Calls `look` after the node in every turn; it returns when it wants the
+  /// next turn at the latest.
+  void AfterTurn(std::function<Time(Time)> look);
+
   /// Returns when a stop signal came or the node is done.
   void Run(Node& node);
 
@@ -65,6 +69,7 @@ class EventLoop {
   const StopSignal& stop_;
   std::vector<Watched> watched_;
   std::vector<Timer> timers_;
+  std::vector<std::function<Time(Time)>> after_turn_;
 };
 
 }  // namespace terra::bus

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxErrorBytes = 500;
 constexpr std::size_t kMaxConfigBytes = 16'000;
+constexpr Duration kShortestPeriod = std::chrono::milliseconds(100);
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -34,6 +35,18 @@ Heartbeat::Heartbeat(std::string name, std::string config, Outbox& out,
       out_(out),
       bus_(bus),
       inbox_(inbox) {}
+
+Time Heartbeat::Advance(const Node& node, Time now) {
+  const bool changed = node.state() != sent_state_;
+  if (due_.Due(now) || (changed && now >= earliest_)) {
+    sent_state_ = node.state();
+    SendStatus(node);
+    due_.Postpone(now);
+    earliest_ = now + kShortestPeriod;
+    return due_.next();
+  }
+  return changed ? earliest_ : due_.next();
+}
 
 void Heartbeat::SendStatus(const Node& node) {
   terra_msg::status_t status{};

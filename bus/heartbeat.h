@@ -5,6 +5,7 @@
 #include "bus/bus.h"
 #include "bus/envelope.h"
 #include "bus/node.h"
+#include "bus/time.h"
 
 namespace terra::bus {
 
@@ -15,18 +16,28 @@ class Heartbeat {
   Heartbeat(std::string name, std::string config, Outbox& out, const Bus& bus,
             const Inbox& inbox);
 
-  /// Sends STATUS; logs a state or error that changed; feeds the watchdog of
-  /// systemd where there is one (sd_notify(3) protocol).
-  void SendStatus(const Node& node);
+  /// Sends STATUS where it is due: when a second has passed since the last, and
+  /// when the state changed (at most ten a second, however it flutters).
+  /// Returns when to call at the latest; call also after every turn of the
+  /// node.
+  ///
+  /// Logs a state or error that changed; feeds the watchdog of systemd where
+  /// there is one (sd_notify(3) protocol).
+  Time Advance(const Node& node, Time now);
   void SendConfig();
 
  private:
+  void SendStatus(const Node& node);
+
   std::string name_;
   std::string config_;
   std::string host_;
   Outbox& out_;
   const Bus& bus_;
   const Inbox& inbox_;
+  Periodic due_{kSlowPeriod};
+  Time earliest_ = Time::min();  ///< Of the next STATUS.
+  std::string sent_state_;
   std::string logged_state_;
   std::string logged_error_;
 };

@@ -10,6 +10,7 @@
 #include "bus/lcm_url.h"
 #include "bus/log.h"
 #include "bus/usage_message.h"
+#include "output/standard_output.h"
 
 namespace terra::bus {
 namespace {
@@ -47,8 +48,8 @@ int Serve(const ProcessSpec& spec, const std::string& name,
     if (!listening) return Fail(listening.error().message);
   }
   Heartbeat heartbeat(name, config, out, *bus, inbox);
-  loop.Every(kSlowPeriod, [&](Time) {
-    heartbeat.SendStatus(*node);
+  loop.AfterTurn([&](Time now) {
+    return heartbeat.Advance(*node, now);
   });
   loop.Every(kConfigPeriod, [&](Time) {
     heartbeat.SendConfig();
@@ -60,39 +61,7 @@ int Serve(const ProcessSpec& spec, const std::string& name,
   return node->exit_code();
 }
 
-}  // namespace
-
-Status BusOptions::Complete() {
-  lcm_url = EffectiveLcmUrl(lcm_url);
-  if (advice_url.empty()) {
-    Result<std::string> derived = AdviceUrlFor(lcm_url);
-    if (!derived) return derived.error();
-    advice_url = *std::move(derived);
-  }
-  for (const std::string& url : {lcm_url, advice_url}) {
-    const Result<LcmUrl> parsed = ParseLcmUrl(url);
-    if (!parsed) return parsed.error();
-  }
-  return Done{};
-}
-
-Result<ChannelNames> BusOptions::Channels() const {
-  return ChannelNames::Create(robot, map_prefix);
-}
-
-void AddBusOptions(CLI::App& app, BusOptions& options) {
-  app.add_option("--lcm-url", options.lcm_url,
-                 "the deployed bus (default: LCM_DEFAULT_URL, else " +
-                     std::string(kDefaultLcmUrl) + ")");
-  app.add_option("--advice-url", options.advice_url,
-                 "the advice bus (default: --lcm-url with its port plus one)");
-  app.add_option("--robot", options.robot,
-                 "puts NAME_ in front of every channel (A-Z, 0-9)");
-  app.add_option("--map-prefix", options.map_prefix,
-                 "does so for the map channels (default: the robot's)");
-}
-
-int RunProcess(const ProcessSpec& spec, int argc, char** argv) {
+int ParseAndServe(const ProcessSpec& spec, int argc, char** argv) {
   SetLogName(spec.program);
   CLI::App app(spec.description, spec.program);
   app.option_defaults()->always_capture_default();
@@ -135,6 +104,44 @@ int RunProcess(const ProcessSpec& spec, int argc, char** argv) {
   } catch (const std::exception& error) {
     return Fail(error.what());
   }
+}
+
+}  // namespace
+
+Status BusOptions::Complete() {
+  lcm_url = EffectiveLcmUrl(lcm_url);
+  if (advice_url.empty()) {
+    Result<std::string> derived = AdviceUrlFor(lcm_url);
+    if (!derived) return derived.error();
+    advice_url = *std::move(derived);
+  }
+  for (const std::string& url : {lcm_url, advice_url}) {
+    const Result<LcmUrl> parsed = ParseLcmUrl(url);
+    if (!parsed) return parsed.error();
+  }
+  return Done{};
+}
+
+Result<ChannelNames> BusOptions::Channels() const {
+  return ChannelNames::Create(robot, map_prefix);
+}
+
+void AddBusOptions(CLI::App& app, BusOptions& options) {
+  app.add_option("--lcm-url", options.lcm_url,
+                 "the deployed bus (default: LCM_DEFAULT_URL, else " +
+                     std::string(kDefaultLcmUrl) + ")");
+  app.add_option("--advice-url", options.advice_url,
+                 "the advice bus (default: --lcm-url with its port plus one)");
+  app.add_option("--robot", options.robot,
+                 "puts NAME_ in front of every channel (A-Z, 0-9)");
+  app.add_option("--map-prefix", options.map_prefix,
+                 "does so for the map channels (default: the robot's)");
+}
+
+int RunProcess(const ProcessSpec& spec, int argc, char** argv) {
+  ReserveStandardStreams();
+  const int exit_code = ParseAndServe(spec, argc, argv);
+  return FinishStandardOutput(spec.program.c_str(), exit_code);
 }
 
 }  // namespace terra::bus

@@ -8,7 +8,7 @@
 #include "benchmark/reference_builder.h"
 #include "cli/bench_commands.h"
 #include "cli/output.h"
-#include "terrain/files/whole_file.h"
+#include "output/output_file.h"
 
 namespace terra::cli {
 namespace {

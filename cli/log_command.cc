@@ -1,4 +1,3 @@
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -13,6 +12,7 @@
 #include "logger/log_info.h"
 #include "logger/log_reader.h"
 #include "logger/report.h"
+#include "output/output_file.h"
 
 namespace terra::cli {
 namespace {
@@ -147,11 +147,8 @@ int RunReport(const ReportArguments& arguments) {
   Result<logger::LogReader> reader = OpenWithEvents(arguments.file);
   if (!reader) return Fail(reader.error());
   const std::string page = logger::MakeReport(arguments.file, *reader);
-  std::ofstream file(arguments.out, std::ios::binary);
-  if (!file.write(page.data(), std::ssize(page)) || !file.flush()) {
-    return Fail({ErrorCode::kUnavailable, "cannot write " + arguments.out});
-  }
-  return kDone;
+  const Status written = WriteWholeFile(arguments.out, page);
+  return written ? kDone : Fail(written.error());
 }
 
 void AddReport(CLI::App& log, int& exit_code) {

@@ -7,6 +7,7 @@
 #include "bus/usage_message.h"
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "output/standard_output.h"
 
 namespace {
 
@@ -52,10 +53,12 @@ int Run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  terra::ReserveStandardStreams();
+  int exit_code = kCouldNot;
   try {
-    return Run(argc, argv);
+    exit_code = Run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "terra: " << error.what() << "\n";
-    return kCouldNot;
   }
+  return terra::FinishStandardOutput("terra", exit_code);
 }

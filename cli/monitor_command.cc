@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/monitor_node.h"
 #include "cli/output.h"
+#include "output/standard_output.h"
 
 namespace terra::cli {
 namespace {
@@ -26,11 +27,11 @@ struct MonitorArguments {
 };
 
 // A terminal is redrawn in place; a file or pipe gets one view after another.
-void Show(const std::string& view) {
+bool Show(const std::string& view) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   std::printf("%s%s%s", terminal ? kClearScreen : "", view.c_str(),
               terminal ? "\nCtrl-C ends this view\n" : "\n");
-  std::fflush(stdout);
+  return FlushStandardOutput().ok();
 }
 
 int Watch(MonitorArguments& arguments) {

@@ -1,5 +1,6 @@
 #include "cli/monitor_node.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -100,7 +101,7 @@ bus::Time MonitorNode::Advance(bus::Time now) {
     return now - entry.second.heard_at > kForgotten;
   });
   done_ = now >= end_;
-  if (refresh_.Due(now) || done_) show_(View(now));
+  if (refresh_.Due(now) || done_) done_ = !show_(View(now)) || done_;
   return std::min(refresh_.next(), end_);
 }
 
@@ -140,7 +141,6 @@ std::string MonitorNode::RouteLines(bus::Time now) const {
 
 std::string MonitorNode::VerdictLines() const {
   std::string text = "\nverdicts, newest first\n";
-  if (verdicts_.empty()) text += "  none yet\n";
   for (const verdict_t& verdict : verdicts_) {
     const auto code = static_cast<verifier::Code>(verdict.code);
     text += Printed("  %-20s %-16s cost %.3f against %.3f, judged in %lld us\n",
@@ -152,6 +152,41 @@ std::string MonitorNode::VerdictLines() const {
                     std::string(verifier::CodeName(code)).c_str(),
                     verdict.candidate_cost, verdict.cost_to_beat,
                     static_cast<long long>(verdict.t_det_us));
+  }
+  return text + EarlierVerdictLines();
+}
+
+// A verdict is said once. Of those from before this view only that is known
+// which is repeated: the route they left deployed, and the gate's counts.
+std::string MonitorNode::EarlierVerdictLines() const {
+  std::string text;
+  const bool of_this_view =
+      deployed_ &&
+      std::any_of(verdicts_.begin(), verdicts_.end(),
+                  [this](const verdict_t& verdict) {
+                    return verdict.session == deployed_->session &&
+                           verdict.code == verdict_t::CODE_ACCEPTED;
+                  });
+  if (deployed_ && deployed_->mode == deployed_t::MODE_CANDIDATE &&
+      !of_this_view) {
+    text += Printed(
+        "  %-20s accepted before this view began: attempt %lld, "
+        "cost %.3f\n",
+        Printable(deployed_->source, 20).c_str(),
+        static_cast<long long>(deployed_->source_attempt),
+        deployed_->deployed_cost);
+  }
+  for (const auto& [key, process] : processes_) {
+    const auto judged = CounterOf(process.status, "judged");
+    const auto accepted = CounterOf(process.status, "accepted");
+    if (!judged || !accepted) continue;
+    text += Printed("  %s has judged %lld since its start and accepted %lld\n",
+                    Printable(process.status.status_name, 20).c_str(),
+                    static_cast<long long>(*judged),
+                    static_cast<long long>(*accepted));
+  }
+  if (verdicts_.empty() && text.empty()) {
+    text = "  none heard since this view began\n";
   }
   return text;
 }

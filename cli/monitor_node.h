@@ -14,10 +14,12 @@ namespace terra::cli {
 /// What is known of a running set, from its messages: the route in force, the
 /// latest verdicts, and every process with its age.
 ///
-/// Shows it as text once a second through `show`. Says nothing on the bus.
+/// Shows it as text once a second through `show`, and ends when that cannot be
+/// shown. Says nothing on the bus.
 class MonitorNode : public bus::Node {
  public:
-  using Show = std::function<void(const std::string&)>;
+  /// Returns whether the text could be shown.
+  using Show = std::function<bool(const std::string&)>;
 
   /// Ends after `duration`; kNever - now = never.
   MonitorNode(bus::Duration duration, Show show);
@@ -39,6 +41,7 @@ class MonitorNode : public bus::Node {
   void OnVerdict(const terra_msg::verdict_t& message);
   std::string RouteLines(bus::Time now) const;
   std::string VerdictLines() const;
+  std::string EarlierVerdictLines() const;
   std::string ProcessLines(bus::Time now) const;
 
   bus::Duration duration_;

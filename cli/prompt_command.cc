@@ -15,8 +15,8 @@
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
+#include "output/output_file.h"
 #include "terrain/digest.h"
-#include "terrain/files/whole_file.h"
 
 namespace terra::cli {
 namespace {

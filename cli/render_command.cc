@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -36,6 +37,17 @@ std::string Label(std::size_t number, const RouteWalk& walk) {
   return label + cost.data();
 }
 
+// Two routes are usually a baseline and what may replace it.
+std::string Caption(const TerrainMap& map, const std::vector<Route>& routes) {
+  if (routes.size() != 2) return "";
+  const double first = WalkRoute(map, routes[0]).cost;
+  const double second = WalkRoute(map, routes[1]).cost;
+  if (!std::isfinite(first) || !std::isfinite(second)) return "";
+  const double saving = SavingPercent(first, second);
+  return Printed("route 2 costs %.1f %% %s than route 1", std::abs(saving),
+                 saving < 0 ? "more" : "less");
+}
+
 void AddOnce(std::vector<Cell>& cells, Cell cell) {
   if (std::find(cells.begin(), cells.end(), cell) == cells.end()) {
     cells.push_back(cell);
@@ -53,6 +65,7 @@ int RunRender(const RenderArguments& arguments) {
     AddOnce(picture.starts, route.front());
     AddOnce(picture.goals, route.back());
   }
+  picture.caption = Caption(*map, arguments.routes);
   const Status written = WritePicture(*map, picture, arguments.out);
   return written.ok() ? kDone : Fail(written.error());
 }

@@ -40,6 +40,17 @@ struct RequestArguments {
   bool json = false;
 };
 
+// What the two routes cost, as the gate says.
+std::string Caption(const deployed_t& deployed) {
+  const std::string baseline = Printed("baseline %.1f", deployed.baseline_cost);
+  if (deployed.mode != deployed_t::MODE_CANDIDATE) {
+    return baseline + ", which is deployed";
+  }
+  return baseline +
+         Printed(", deployed %.1f: %.1f %% less", deployed.deployed_cost,
+                 SavingPercent(deployed.baseline_cost, deployed.deployed_cost));
+}
+
 Status Draw(const RequestNode& node, const RequestArguments& arguments) {
   if (node.map().map() == nullptr) {
     return Error{
@@ -57,6 +68,7 @@ Status Draw(const RequestNode& node, const RequestArguments& arguments) {
     picture.routes.push_back(PictureRoute{bus::WaypointsOf(*node.deployed()),
                                           kCandidateColor, "deployed"});
   }
+  if (node.HasRoute()) picture.caption = Caption(*node.deployed());
   return WritePicture(node.map().map()->map, picture, arguments.picture);
 }
 

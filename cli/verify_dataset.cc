@@ -9,9 +9,9 @@
 #include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
+#include "output/output_file.h"
 #include "terrain/files/csv.h"
 #include "terrain/files/dataset.h"
-#include "terrain/files/whole_file.h"
 #include "terrain/route_text.h"
 #include "verifier/verify.h"
 

@@ -56,6 +56,18 @@ LogContents LogContents::Load(LogReader& reader, SealChecker& seals) {
   return contents;
 }
 
+std::vector<const Logged<LogContents::Decided>*> LogContents::DecisionsInOrder()
+    const {
+  std::vector<const Logged<Decided>*> all;
+  for (const auto& [session, of_session] : decisions) {
+    for (const auto& [number, logged] : of_session) all.push_back(&logged);
+  }
+  std::sort(all.begin(), all.end(), [](const auto* a, const auto* b) {
+    return a->index < b->index;
+  });
+  return all;
+}
+
 // Finds what shows only when all is known.
 void LogContents::Compare() {
   for (std::string& fault : maps.Faults()) {

@@ -90,6 +90,10 @@ class LogContents {
   std::map<std::int64_t, Logged<terra_msg::config_t>> configs;
   std::vector<Logged<terra_msg::status_t>> statuses;
 
+  /// The decisions of all gates in the order of the log. The maps above are in
+  /// that of the sessions, which are random numbers.
+  std::vector<const Logged<Decided>*> DecisionsInOrder() const;
+
   /// Event of the first DEPLOYED; beyond every index when there is none.
   std::int64_t first_deployed = std::numeric_limits<std::int64_t>::max();
 

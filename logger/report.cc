@@ -12,6 +12,7 @@
 #include "logger/log_contents.h"
 #include "logger/report_charts.h"
 #include "logger/report_html.h"
+#include "logger/report_latencies.h"
 #include "logger/report_map.h"
 #include "logger/report_stories.h"
 #include "logger/report_tables.h"
@@ -93,13 +94,13 @@ std::string Cards(const LogContents& contents,
       if (verdict->code == verdict_t::CODE_ACCEPTED) ++accepted;
     }
   }
-  double saved = 0;
-  std::int64_t served = 0;
+  std::vector<double> savings;
   for (const RequestStory& story : stories) {
-    if (!std::isfinite(story.saving_percent())) continue;
-    saved += story.saving_percent();
-    ++served;
+    if (std::isfinite(story.saving_percent())) {
+      savings.push_back(story.saving_percent());
+    }
   }
+  std::sort(savings.begin(), savings.end());
   std::string html = "<div class=\"cards\">\n";
   html += Card(std::to_string(stories.size()), "requests");
   html += Card(std::to_string(contents.baselines.size()), "baselines");
@@ -107,8 +108,8 @@ std::string Cards(const LogContents& contents,
   html += Card(std::to_string(verdicts), "verdicts");
   html += Card(std::to_string(accepted), "accepted", "good");
   html += Card(
-      served > 0 ? Number(saved / static_cast<double>(served), 1) + " %" : "-",
-      "mean saving, route deployed last");
+      savings.empty() ? "-" : Number(savings[savings.size() / 2], 1) + " %",
+      "median saving, route deployed last");
   html += Card(audit.clean() ? "clean" : std::to_string(audit.num_findings),
                audit.clean() ? "audit" : "audit findings",
                audit.clean() ? "good" : "bad");
@@ -154,44 +155,6 @@ std::string Maps(LogContents& contents,
   return html + "</div>\n" + TerrainKey(drawn->map);
 }
 
-std::string Latencies(const LogContents& contents,
-                      const std::vector<RequestStory>& stories) {
-  Latency asked{"request to baseline deployed", {}};
-  Latency baseline{"baseline to deployed", {}};
-  Latency refined{"request to refined route", {}};
-  Latency model{"advisor's model (T_llm)", {}};
-  Latency check{"gate's check (T_det)", {}};
-  const auto add = [](Latency& latency, std::int64_t from, std::int64_t to) {
-    if (from != 0 && to != 0) {
-      latency.seconds.push_back(std::max(0.0, SecondsBetween(from, to)));
-    }
-  };
-  for (const RequestStory& story : stories) {
-    add(asked, story.asked_us, story.baseline_deployed_us);
-    add(baseline, story.baseline_us, story.baseline_deployed_us);
-    add(refined, story.asked_us, story.refined_us);
-  }
-  for (const auto& [name, advice] : contents.advice) {
-    const std::int64_t t_llm_us = advice.front().message.t_llm_us;
-    if (t_llm_us > 0) {
-      model.seconds.push_back(1e-6 * static_cast<double>(t_llm_us));
-    }
-  }
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      const auto* verdict = std::get_if<verdict_t>(&logged.message);
-      if (verdict != nullptr) {
-        check.seconds.push_back(
-            1e-6 *
-            static_cast<double>(std::max<std::int64_t>(0, verdict->t_det_us)));
-      }
-    }
-  }
-  return LatencyChart({asked, baseline, refined, model, check}) +
-         "<p class=\"note\">Between events: as the recorder heard them, on its "
-         "own clock.</p>\n";
-}
-
 }  // namespace
 
 std::string MakeReport(const std::string& title, LogReader& reader) {
@@ -212,7 +175,7 @@ std::string MakeReport(const std::string& title, LogReader& reader) {
   html += Section("Time line", TimeLine(contents) + TimeLineKey());
   html += Section("Routes", Maps(contents, stories));
   html += Section("Requests", RequestTable(stories));
-  html += Section("Latency", Latencies(contents, stories));
+  html += Section("Latency", LatencySection(LatenciesOf(contents, stories)));
   html += Section("Verdicts", VerdictTable(contents));
   html += Section("Processes", ProcessTable(contents));
   html += Section("Audit", AuditTable(audit));

@@ -155,33 +155,32 @@ void DrawAdvice(const LogContents& contents, Lanes& lanes) {
 
 void DrawDecisions(const LogContents& contents, Lanes& lanes) {
   lanes.Begin("verdicts");
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      const auto* verdict = std::get_if<verdict_t>(&logged.message);
-      if (verdict == nullptr) continue;
-      lanes.Dot(
-          logged.time_us, VerdictColor(verdict->code),
-          verdict->advisor + ": " +
-              std::string(verifier::CodeName(verifier::Code{verdict->code})));
-    }
+  const auto decisions = contents.DecisionsInOrder();
+  for (const auto* logged : decisions) {
+    const auto* verdict = std::get_if<verdict_t>(&logged->message);
+    if (verdict == nullptr) continue;
+    lanes.Dot(
+        logged->time_us, VerdictColor(verdict->code),
+        verdict->advisor + ": " +
+            std::string(verifier::CodeName(verifier::Code{verdict->code})));
   }
   lanes.Begin("deployed");
-  for (const auto& [session, decisions] : contents.decisions) {
-    const Logged<LogContents::Decided>* open = nullptr;
-    const auto close = [&](std::int64_t end_us) {
-      if (open == nullptr) return;
-      const auto& deployed = std::get<deployed_t>(open->message);
-      lanes.Bar(open->time_us, end_us, ModeColor(deployed.mode),
-                "route " + std::to_string(deployed.route_seq) + ", cost " +
-                    Number(deployed.deployed_cost) + ", " + deployed.source);
-    };
-    for (const auto& [number, logged] : decisions) {
-      if (!std::holds_alternative<deployed_t>(logged.message)) continue;
-      close(logged.time_us);
-      open = &logged;
-    }
-    close(contents.last_us);
+  // What a gate deploys ends what any gate deployed before: the robot follows
+  // the newest.
+  const Logged<LogContents::Decided>* open = nullptr;
+  const auto close = [&](std::int64_t end_us) {
+    if (open == nullptr) return;
+    const auto& deployed = std::get<deployed_t>(open->message);
+    lanes.Bar(open->time_us, end_us, ModeColor(deployed.mode),
+              "route " + std::to_string(deployed.route_seq) + ", cost " +
+                  Number(deployed.deployed_cost) + ", " + deployed.source);
+  };
+  for (const auto* logged : decisions) {
+    if (!std::holds_alternative<deployed_t>(logged->message)) continue;
+    close(logged->time_us);
+    open = logged;
   }
+  close(contents.last_us);
 }
 
 void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
@@ -196,8 +195,9 @@ void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
   for (const auto& [name, all] : by_name) {
     lanes.Begin(name + " alive");
     for (const auto* status : all) {
-      const bool ready = status->message.state.starts_with("ready");
-      lanes.Tick(status->time_us, ready ? kCandidateColor : kBadColor);
+      lanes.Tick(status->time_us, DoesItsWork(status->message.state)
+                                      ? kCandidateColor
+                                      : kBadColor);
     }
   }
 }

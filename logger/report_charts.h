@@ -15,7 +15,7 @@ std::string TimeLine(const LogContents& contents);
 /// What its colours mean.
 std::string TimeLineKey();
 
-/// One measured quantity.
+/// One quantity.
 struct Latency {
   std::string name;
   std::vector<double> seconds;

@@ -47,22 +47,22 @@ std::vector<RequestStory> Stories(const LogContents& contents) {
     std::int64_t& first = stories[baseline.message.request_id].baseline_us;
     first = first == 0 ? baseline.time_us : std::min(first, baseline.time_us);
   }
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      const auto* deployed = std::get_if<deployed_t>(&logged.message);
-      if (deployed == nullptr || deployed->request_id == 0) continue;
-      RequestStory& story = stories[deployed->request_id];
-      const bool baseline = deployed->mode == deployed_t::MODE_BASELINE;
-      const bool candidate = deployed->mode == deployed_t::MODE_CANDIDATE;
-      if (baseline && story.baseline_deployed_us == 0) {
-        story.baseline_deployed_us = logged.time_us;
-      }
-      if (candidate && story.refined_us == 0) story.refined_us = logged.time_us;
-      if (candidate) ++story.candidates;
-      if ((baseline || candidate) && logged.time_us >= story.last_us) {
-        story.last = deployed;
-        story.last_us = logged.time_us;
-      }
+  // A gate that was killed and its successor both deploy for a request: what
+  // came first counts, whatever their sessions.
+  for (const auto* logged : contents.DecisionsInOrder()) {
+    const auto* deployed = std::get_if<deployed_t>(&logged->message);
+    if (deployed == nullptr || deployed->request_id == 0) continue;
+    RequestStory& story = stories[deployed->request_id];
+    const bool baseline = deployed->mode == deployed_t::MODE_BASELINE;
+    const bool candidate = deployed->mode == deployed_t::MODE_CANDIDATE;
+    if (baseline && story.baseline_deployed_us == 0) {
+      story.baseline_deployed_us = logged->time_us;
+    }
+    if (candidate && story.refined_us == 0) story.refined_us = logged->time_us;
+    if (candidate) ++story.candidates;
+    if (baseline || candidate) {
+      story.last = deployed;
+      story.last_us = logged->time_us;
     }
   }
   for (const std::int64_t id : AskedBefore(contents)) {

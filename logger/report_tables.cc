@@ -65,14 +65,11 @@ std::string RequestTable(const std::vector<RequestStory>& stories) {
 }
 
 std::string VerdictTable(const LogContents& contents) {
-  std::vector<const Logged<LogContents::Decided>*> verdicts;
-  for (const auto& [session, decisions] : contents.decisions) {
-    for (const auto& [number, logged] : decisions) {
-      if (std::holds_alternative<verdict_t>(logged.message)) {
-        verdicts.push_back(&logged);
-      }
-    }
-  }
+  std::vector<const Logged<LogContents::Decided>*> verdicts =
+      contents.DecisionsInOrder();
+  std::erase_if(verdicts, [](const auto* logged) {
+    return !std::holds_alternative<verdict_t>(logged->message);
+  });
   std::vector<std::vector<std::string>> rows;
   const std::size_t first =
       verdicts.size() > kMaxRows ? verdicts.size() - kMaxRows : 0;
@@ -127,12 +124,11 @@ std::string ProcessTable(const LogContents& contents) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& [name, process] : processes) {
     const terra_msg::status_t& last = *process.last;
-    const bool ready = last.state.starts_with("ready");
     rows.push_back({Escape(name), Escape(last.host), std::to_string(last.pid),
                     std::to_string(process.sessions.size()),
                     std::to_string(process.heartbeats),
                     Number(process.longest_silence, 1) + " s",
-                    Long(ready ? "good" : "bad", last.state),
+                    Long(DoesItsWork(last.state) ? "good" : "bad", last.state),
                     Long("", last.last_error), Long("", last.build_id)});
   }
   return Table({"process", "host", "pid", "starts", "heartbeats",

@@ -1,9 +1,10 @@
 #include "benchmark/speed/speed_folder.h"
 
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "output/output_file.h"
 
 namespace terra::benchmark {
 namespace {
@@ -17,15 +18,9 @@ std::string NameOf(const SpeedCase& c) {
   return NameOf(c.map.width(), c.family, c.index);
 }
 
-void WriteAtOnce(const fs::path& path, const std::string& bytes) {
-  const fs::path part = path.string() + ".part";
-  std::ofstream file(part, std::ios::binary);
-  file << bytes;
-  file.close();
-  if (file.fail()) {
-    throw std::runtime_error("cannot write " + part.string());
-  }
-  fs::rename(part, path);
+void Write(const fs::path& path, const std::string& bytes) {
+  const Status written = WriteWholeFile(path.string(), bytes);
+  if (!written.ok()) throw std::runtime_error(written.error().message);
 }
 
 }  // namespace
@@ -48,12 +43,12 @@ void SpeedFolder::WriteMap(const SpeedCase& c) const {
       costs.append(reinterpret_cast<const char*>(&cost), sizeof(cost));
     }
   }
-  WriteAtOnce(folder_ / "maps" / (NameOf(c) + ".f32"), costs);
+  Write(folder_ / "maps" / (NameOf(c) + ".f32"), costs);
   std::ostringstream ends;
   ends << "side,family,index,start_x,start_y,goal_x,goal_y\n"
        << c.map.width() << ',' << c.family << ',' << c.index << ',' << c.start.x
        << ',' << c.start.y << ',' << c.goal.x << ',' << c.goal.y << '\n';
-  WriteAtOnce(folder_ / "maps" / (NameOf(c) + ".csv"), ends.str());
+  Write(folder_ / "maps" / (NameOf(c) + ".csv"), ends.str());
 }
 
 void SpeedFolder::WriteSamples(const SpeedCase& c,
@@ -64,7 +59,7 @@ void SpeedFolder::WriteSamples(const SpeedCase& c,
     text << c.map.width() << ',' << c.family << ',' << c.index << ",\""
          << s.name << "\"," << s.microseconds << ',' << s.amount << '\n';
   }
-  WriteAtOnce(folder_ / "samples" / (NameOf(c) + ".csv"), text.str());
+  Write(folder_ / "samples" / (NameOf(c) + ".csv"), text.str());
 }
 
 }  // namespace terra::benchmark

@@ -13,6 +13,7 @@
 #include "benchmark/progress.h"
 #include "benchmark/speed/speed_folder.h"
 #include "benchmark/speed/works.h"
+#include "output/standard_output.h"
 
 namespace terra::benchmark {
 namespace {
@@ -88,18 +89,22 @@ void Run(const std::string& path, bool quick) {
 }  // namespace terra::benchmark
 
 int main(int argc, char** argv) {
+  terra::ReserveStandardStreams();
   CLI::App app{"Times searches beside other implementations"};
   std::string folder;
   bool quick = false;
   app.add_option("--out", folder, "Folder for the samples; what it holds stays")
       ->required();
   app.add_flag("--quick", quick, "Few and small maps: does it work at all?");
-  CLI11_PARSE(app, argc, argv);
+  int exit_code = 1;
   try {
+    app.parse(argc, argv);
     terra::benchmark::Run(folder, quick);
+    exit_code = 0;
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "terra-speed: %s\n", error.what());
-    return 1;
   }
-  return 0;
+  return terra::FinishStandardOutput("terra-speed", exit_code);
 }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "output/output_file.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/files/case_reader.h"
 #include "terrain/files/csv.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "terrain/files/whole_file.h"
+#include "output/output_file.h"
 #include "terrain/require.h"
 
 namespace terra {

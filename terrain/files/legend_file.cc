@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "output/output_file.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/files/csv.h"
-#include "terrain/files/whole_file.h"
 
 namespace terra {
 namespace {

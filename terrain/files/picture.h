@@ -26,7 +26,10 @@ struct PictureOptions {
   std::vector<PictureRoute> routes;  ///< Drawn in this order.
   std::vector<Cell> starts;          ///< A ring with an S.
   std::vector<Cell> goals;           ///< A ring with a G.
-  bool legend = true;                ///< A box right of the map.
+  /// A white page around the map: a frame, so that white ground ends somewhere,
+  /// a margin for what lies on the border, the legend to the right.
+  bool page = true;
+  std::string caption;  ///< One line below the map; empty = none.
   /// Pixels per cell; 0 = small maps are enlarged to about 700 pixels, larger
   /// ones keep one pixel per cell.
   int scale = 0;
@@ -34,7 +37,8 @@ struct PictureOptions {
 
 /// Draws the map in its legend's colours, routes over it with a light edge, and
 /// writes a PNG. A route is drawn through its dense cells, so what is seen is
-/// what is checked; parts outside the map are left out.
+/// what is checked; parts outside the map are left out. Lines, markers and
+/// letters grow with the picture, so that a large one can be read as a whole.
 /// Errors: the file cannot be written; the picture would be larger than
 /// TerrainMap::kMaxSide x 2 a side.
 Status WritePicture(const TerrainMap& map, const PictureOptions& options,

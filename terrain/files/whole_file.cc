@@ -1,7 +1,5 @@
 #include "terrain/files/whole_file.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -9,16 +7,7 @@
 #include <system_error>
 
 namespace terra {
-namespace {
-
 namespace fs = std::filesystem;
-
-Error CannotWrite(const std::string& path, const std::string& reason) {
-  return Error{ErrorCode::kUnavailable,
-               path + ": cannot be written: " + reason};
-}
-
-}  // namespace
 
 Result<std::ifstream> OpenToRead(const std::string& path) {
   std::error_code failure;
@@ -56,32 +45,6 @@ Result<std::string> ReadWholeFile(const std::string& path,
     return Error{ErrorCode::kUnavailable, path + ": cannot be read"};
   }
   return content;
-}
-
-Status WriteWholeFile(const std::string& path, std::string_view content) {
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    if (!file) {
-      return CannotWrite(path, std::strerror(errno));
-    }
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    if (!file) {
-      const std::string reason = std::strerror(errno);
-      std::error_code ignored;
-      fs::remove(temporary, ignored);
-      return CannotWrite(path, reason);
-    }
-  }
-  std::error_code failure;
-  fs::rename(temporary, path, failure);
-  if (failure) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    return CannotWrite(path, failure.message());
-  }
-  return Done{};
 }
 
 }  // namespace terra

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <fstream>
 #include <string>
-#include <string_view>
 
 #include "terrain/result.h"
 
@@ -16,9 +15,5 @@ Result<std::ifstream> OpenToRead(const std::string& path);
 /// file, larger than `max_bytes`.
 Result<std::string> ReadWholeFile(const std::string& path,
                                   std::size_t max_bytes);
-
-/// Writes a file so that a reader sees the old content or the new, never a part
-/// of it: to a temporary name beside it, then renamed.
-Status WriteWholeFile(const std::string& path, std::string_view content);
 
 }  // namespace terra

@@ -18,6 +18,7 @@
 
 #include "bus/envelope.h"
 #include "bus/event_loop.h"
+#include "bus/heartbeat.h"
 #include "tests/bus/sample_messages.h"
 
 namespace terra::bus {
@@ -206,6 +207,65 @@ TEST(EventLoopTest, RestsWhileNothingHappens) {
   node.until_end = Clock::now() + milliseconds(100);
   loop.Run(node);
   EXPECT_LE(node.turns, 5);
+}
+
+// In a state of the test's choice.
+class StateNode : public Node {
+ public:
+  Time Advance(Time) override { return kNever; }
+  std::string state() const override { return state_now; }
+  std::string state_now = "waiting for map";
+};
+
+TEST(HeartbeatTest, TellsAChangedStateAtOnceAndElseOnceASecond) {
+  const auto bus = OpenBus("memq://");
+  Inbox inbox;
+  Outbox out(*bus, 7);
+  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  StateNode node;
+  const auto sent_at = [&](milliseconds at) -> std::int64_t {
+    heartbeat.Advance(node, Time(at));
+    return bus->counters().sent;
+  };
+  EXPECT_EQ(sent_at(milliseconds(0)), 1) << "the first state";
+  EXPECT_EQ(sent_at(milliseconds(400)), 1) << "nothing new";
+  node.state_now = "ready";
+  EXPECT_EQ(sent_at(milliseconds(410)), 2) << "a new state";
+  EXPECT_EQ(sent_at(milliseconds(1'000)), 2) << "a second after the last one";
+  EXPECT_EQ(sent_at(milliseconds(1'410)), 3);
+}
+
+TEST(HeartbeatTest, AStateThatFluttersMakesNoFloodAndItsLastIsTold) {
+  const auto bus = OpenBus("memq://");
+  Inbox inbox;
+  Outbox out(*bus, 7);
+  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  StateNode node;
+  Time next = Time(milliseconds(0));
+  for (int i = 0; i < 1000; ++i) {
+    node.state_now = "state " + std::to_string(i);
+    next = heartbeat.Advance(node, Time(milliseconds(i)));
+  }
+  EXPECT_EQ(bus->counters().sent, 10);
+  EXPECT_EQ(next, Time(milliseconds(1'000))) << "999 is still to be told";
+  heartbeat.Advance(node, next);
+  EXPECT_EQ(bus->counters().sent, 11);
+}
+
+TEST(EventLoopTest, LooksAfterEveryTurnAndWakesForIt) {
+  const StopSignal stop;
+  Inbox inbox;
+  EventLoop loop(inbox, stop);
+  EchoNode node;
+  node.until_end = Clock::now() + std::chrono::seconds(20);
+  int looks = 0;
+  loop.AfterTurn([&](Time now) {
+    // Ends the loop at its second look, which nothing else brings about.
+    if (++looks == 2) node.got_pose = true;
+    return now + milliseconds(5);
+  });
+  loop.Run(node);
+  EXPECT_EQ(looks, 2);
 }
 
 TEST(NodeTest, CountsWhatDoesNotDecode) {

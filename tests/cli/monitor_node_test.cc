@@ -22,7 +22,9 @@ class MonitorNodeTest : public ::testing::Test {
   }
 
   bus::Time now_ = bus::Time{} + std::chrono::seconds(10);
-  MonitorNode node_{std::chrono::hours(1), [](const std::string&) {}};
+  MonitorNode node_{std::chrono::hours(1), [](const std::string&) {
+                      return true;
+                    }};
 };
 
 terra_msg::status_t Heartbeat(const std::string& name, const bus::Counters& c) {
@@ -65,6 +67,52 @@ TEST_F(MonitorNodeTest, SaysNothingOfCallsWhereThereAreNone) {
   const std::string view = ViewAfter(Heartbeat("search", {{"jobs", 4}}));
   EXPECT_THAT(view, HasSubstr("search"));
   EXPECT_THAT(view, Not(HasSubstr("calls")));
+}
+
+terra_msg::deployed_t CandidateOf(const std::string& advisor) {
+  terra_msg::deployed_t deployed{};
+  deployed.utime = 1;
+  deployed.session = 5;
+  deployed.seq = 1;
+  deployed.decision = 3;
+  deployed.route_seq = 2;
+  deployed.request_id = 11;
+  deployed.goal_x = 4;
+  deployed.mode = terra_msg::deployed_t::MODE_CANDIDATE;
+  deployed.cause = terra_msg::deployed_t::CAUSE_UPGRADE;
+  deployed.source = advisor;
+  deployed.source_attempt = 7;
+  deployed.num_waypoints = 2;
+  deployed.waypoint_x = {0, 4};
+  deployed.waypoint_y = {0, 0};
+  deployed.num_steps = 4;
+  deployed.num_chain_bytes = 2;
+  deployed.chain = {0, 0};
+  deployed.deployed_cost = 498.125;
+  deployed.baseline_cost = 693;
+  return deployed;
+}
+
+TEST_F(MonitorNodeTest, TellsOfVerdictsFromBeforeItBeganWhatIsRepeated) {
+  EXPECT_THAT(node_.View(now_), HasSubstr("none heard since this view began"));
+  node_.Receive({bus::Channel::kDeployed, bus::Encode(CandidateOf("search"))},
+                now_);
+  const std::string view =
+      ViewAfter(Heartbeat("verifier", {{"judged", 9}, {"accepted", 2}}));
+  EXPECT_THAT(view, HasSubstr("search               accepted before this view "
+                              "began: attempt 7, cost 498.125"));
+  EXPECT_THAT(view, HasSubstr("verifier has judged 9 since its start and "
+                              "accepted 2"));
+  EXPECT_THAT(view, Not(HasSubstr("none heard since")));
+}
+
+TEST(MonitorNode, EndsWhenNobodySeesIt) {
+  MonitorNode node(std::chrono::hours(1), [](const std::string&) {
+    return false;
+  });
+  bus::Time now = bus::Time{} + std::chrono::seconds(10);
+  for (int i = 0; i < 3 && !node.done(); ++i) now = node.Advance(now);
+  EXPECT_TRUE(node.done());
 }
 
 }  // namespace

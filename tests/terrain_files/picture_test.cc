@@ -1,5 +1,9 @@
 #include "terrain/files/picture.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +41,7 @@ Color PixelAt(const cv::Mat& image, int x, int y) {
 
 PictureOptions Plain(int scale) {
   PictureOptions options;
-  options.legend = false;
+  options.page = false;
   options.scale = scale;
   return options;
 }
@@ -101,9 +105,95 @@ TEST(Picture, TheLegendBoxStandsRightOfTheMap) {
   EXPECT_GE(image.rows, 30);
   bool listed = false;
   for (int y = 0; y < image.rows; ++y) {
-    listed |= PixelAt(image, 700 + 20, y) == kBaselineColor;
+    listed |= PixelAt(image, 700 + 40, y) == kBaselineColor;
   }
   EXPECT_TRUE(listed);
+}
+
+// Where the map's cell (0, 0) is on a page, in a picture of up to 700 pixels.
+constexpr int kMargin = 14;
+
+TEST(Picture, AFrameEndsWhiteGround) {
+  const cv::Mat image = Drawn(WhiteMap(700, 30), {});
+  const Color white = FromRgb(0xFFFFFF);
+  EXPECT_EQ(PixelAt(image, kMargin, kMargin), white);
+  EXPECT_EQ(PixelAt(image, kMargin + 699, kMargin + 29), white);
+  for (const auto& [x, y] : {std::pair{kMargin - 1, kMargin + 15},
+                             {kMargin + 700, kMargin + 15},
+                             {kMargin + 300, kMargin - 1},
+                             {kMargin + 300, kMargin + 30}}) {
+    EXPECT_EQ(PixelAt(image, x, y), FromRgb(0x787878)) << x << "," << y;
+  }
+}
+
+// Pixels of a colour on the page of a map of one pixel per cell, legend left
+// out.
+int PixelsOf(Color color, PictureOptions options, int side) {
+  const cv::Mat image = Drawn(WhiteMap(side, side), options);
+  int count = 0;
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < side + kMargin; ++x) {
+      if (PixelAt(image, x, y) == color) ++count;
+    }
+  }
+  return count;
+}
+
+int RoutePixels(int side, Route route) {
+  PictureOptions options;
+  options.routes = {{std::move(route), kBaselineColor, ""}};
+  return PixelsOf(kBaselineColor, options, side);
+}
+
+TEST(Picture, WhatLiesOnTheBorderIsDrawnWhole) {
+  const int within = RoutePixels(700, {{100, 350}, {600, 350}});
+  EXPECT_GT(within, 500);
+  EXPECT_EQ(RoutePixels(700, {{100, 0}, {600, 0}}), within);
+  EXPECT_EQ(RoutePixels(700, {{100, 699}, {600, 699}}), within);
+  PictureOptions in_the_middle;
+  in_the_middle.starts = {{350, 350}};
+  PictureOptions in_a_corner;
+  in_a_corner.starts = {{0, 699}};
+  EXPECT_EQ(PixelsOf({}, in_a_corner, 700), PixelsOf({}, in_the_middle, 700));
+}
+
+TEST(Picture, LinesAndLettersGrowWithThePicture) {
+  // Four times the length, so that sixteen times the area is four times the
+  // width.
+  const int small = RoutePixels(700, {{100, 350}, {600, 350}});
+  const int large = RoutePixels(2800, {{400, 1400}, {2400, 1400}});
+  EXPECT_GT(large, 10 * small);
+  const int box = Drawn(WhiteMap(700, 200), {}).cols - 700;
+  EXPECT_GT(Drawn(WhiteMap(2800, 200), {}).cols - 2800, 3 * box);
+}
+
+TEST(Picture, ALongLegendBesideALowMapMakesNoHighPicture) {
+  std::vector<Terrain> terrains;
+  for (int id = 0; id < 200; ++id) {
+    terrains.push_back({id, "t" + std::to_string(id), 1.0,
+                        FromRgb(0x808000U + static_cast<std::uint32_t>(id))});
+  }
+  ByteRaster ids = ByteRaster::Zero(200, 2800);
+  for (int id = 0; id < 200; ++id) ids(id, 0) = static_cast<std::uint8_t>(id);
+  const TerrainMap map =
+      TerrainMap::Create(std::move(ids), Legend::Create(terrains).value())
+          .value();
+  EXPECT_LT(Drawn(map, {}).rows, 5000);
+}
+
+TEST(Picture, TheCaptionStandsBelowTheMap) {
+  PictureOptions options;
+  const int without = Drawn(WhiteMap(700, 60), options).rows;
+  options.caption = "baseline 693.3, deployed 498.1: 28.2 % less";
+  const cv::Mat image = Drawn(WhiteMap(700, 60), options);
+  EXPECT_GT(image.rows, without);
+  int ink = 0;
+  for (int y = kMargin + 60 + 4; y < image.rows; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      if (PixelAt(image, x, y).r < 128) ++ink;
+    }
+  }
+  EXPECT_GT(ink, 50);
 }
 
 TEST(Picture, SmallMapsAreEnlargedAndTooLargePicturesRefused) {

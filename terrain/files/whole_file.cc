@@ -8,6 +8,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "terrain/files/file_watch.h"
+
 namespace terra {
 namespace {
 
@@ -21,6 +23,7 @@ Error CannotWrite(const std::string& path, const std::string& reason) {
 }  // namespace
 
 Result<std::ifstream> OpenToRead(const std::string& path) {
+  OpenedFiles::Note(path);
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status)) {

@@ -1,5 +1,7 @@
 #include "advisor/advisor_options.h"
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -8,15 +10,50 @@
 #include "advisor/llm_service.h"
 #include "advisor/polishing_backend.h"
 #include "advisor/refiner_backend.h"
+#include "bus/log.h"
+#include "terrain/files/file_watch.h"
 
 namespace terra::advisor {
 namespace {
+
+// A pool and the file that it is from.
+class WatchedReferences {
+ public:
+  explicit WatchedReferences(std::string path)
+      : path_(std::move(path)), watch_([this]() -> Status {
+          OpenedFiles::Note(path_);
+          auto pool = LoadReferences(path_);
+          if (!pool) return pool.error();
+          pool_ = *std::move(pool);
+          return Done{};
+        }) {}
+
+  Status Begin() { return watch_.Begin(); }
+
+  std::shared_ptr<const ReferencePool> Latest() {
+    const std::optional<Status> read = watch_.ReadIfChanged();
+    if (read && !read->ok()) {
+      bus::LogWarning("references not reloaded: " + read->error().message);
+    }
+    return pool_;
+  }
+
+ private:
+  std::string path_;
+  FileWatch watch_;
+  std::shared_ptr<const ReferencePool> pool_;
+};
 
 Result<std::unique_ptr<Backend>> MakePlainBackend(
     const AdvisorOptions& options) {
   if (auto refiner = MakeRefinerBackend(options.backend)) return refiner;
   LlmBackendOptions llm = options.llm;
   llm.service.backend = options.backend;
+  if (!llm.references.empty()) {
+    auto references = WatchReferences(llm.references);
+    if (!references) return references.error();
+    llm.latest_references = *std::move(references);
+  }
   return LlmBackend::Create(llm);
 }
 
@@ -33,6 +70,16 @@ void AddAdvisorOptions(CLI::App& app, AdvisorOptions& options) {
                "Also send each proposal repaired and improved in a corridor "
                "around it");
   AddLlmOptions(app, options.llm);
+}
+
+Result<std::function<std::shared_ptr<const ReferencePool>()>> WatchReferences(
+    const std::string& path) {
+  const auto watched = std::make_shared<WatchedReferences>(path);
+  const Status read = watched->Begin();
+  if (!read.ok()) return read.error();
+  return std::function([watched] {
+    return watched->Latest();
+  });
 }
 
 Result<std::unique_ptr<Backend>> MakeBackend(const AdvisorOptions& options) {

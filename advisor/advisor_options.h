@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -22,6 +23,13 @@ struct AdvisorOptions {
 
 /// Adds --backend, --polish and the options of the LLM backends.
 void AddAdvisorOptions(CLI::App& app, AdvisorOptions& options);
+
+/// Reads a pool of references, and gives a function that returns it: newly read
+/// when the file has changed since. One that cannot be read then leaves the
+/// pool before in use and is said on stderr.
+/// Errors: as LoadReferences.
+Result<std::function<std::shared_ptr<const ReferencePool>()>> WatchReferences(
+    const std::string& path);
 
 /// Makes the backend that the options name.
 /// Errors: what its making says (a missing key, an address not allowed, ...).

@@ -75,7 +75,9 @@ Result<std::unique_ptr<Backend>> LlmBackend::Create(
     const LlmBackendOptions& options) {
   auto service = MakeLlmService(options.service, AtLimit::kRefuse);
   if (!service) return service.error();
-  auto pool = LoadReferences(options.references);
+  using Pool = Result<std::shared_ptr<const ReferencePool>>;
+  auto pool = options.latest_references ? Pool(options.latest_references())
+                                        : LoadReferences(options.references);
   if (!pool) return pool.error();
   return std::unique_ptr<Backend>(std::make_unique<LlmBackend>(
       options.service.backend, *std::move(service), options, *std::move(pool)));
@@ -88,6 +90,7 @@ LlmBackend::LlmBackend(std::string name, LlmService service,
       service_(std::move(service)),
       method_(options.method),
       min_gain_percent_(options.min_gain_percent),
+      latest_references_(options.latest_references),
       pool_(std::move(pool)) {
   method_.rounds_deadline_s = options.service.provider.deadline_s;
 }
@@ -132,6 +135,7 @@ AdviceAnswer LlmBackend::Advise(const AdviceTask& task, std::stop_token stop) {
       task.baseline,
       task.baseline_cost,
       ""};
+  if (latest_references_) pool_ = latest_references_();
   const PreparedCase prepared =
       PrepareCase(planning_case, method_, pool_.get());
   answer.t_prep_us = MicrosecondsSince(begin);

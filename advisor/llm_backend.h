@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -17,6 +18,9 @@ struct LlmBackendOptions {
   LlmServiceOptions service;
   MethodOptions method;
   std::string references;  ///< Pool file; empty = the one that comes along.
+  /// Asked for the pool before each case, where that may change; empty = the
+  /// file is read once. Called by one thread at a time.
+  std::function<std::shared_ptr<const ReferencePool>()> latest_references;
   /// Percent of the baseline's cost. When the native optimum (a lower bound of
   /// every route) promises less, nobody is asked; 0 = always ask.
   double min_gain_percent = 0;
@@ -55,7 +59,8 @@ class LlmBackend : public Backend {
   LlmService service_;
   MethodOptions method_;
   double min_gain_percent_;
-  std::shared_ptr<const ReferencePool> pool_;
+  std::function<std::shared_ptr<const ReferencePool>()> latest_references_;
+  std::shared_ptr<const ReferencePool> pool_;  // Of the advising thread.
   mutable std::mutex mutex_;
   std::int64_t skipped_ = 0;
 };

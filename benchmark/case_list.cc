@@ -85,6 +85,9 @@ Result<CaseSurvey> SurveyCases(const DatasetFolder& dataset,
   Result<std::string> digest = DatasetDigest(dataset);
   if (!digest.ok()) return digest.error();
   survey.dataset_digest = *std::move(digest);
+  // With another cost of unknown ground its maps are others.
+  const std::string unknown = ToText(dataset.unknown);
+  if (!unknown.empty()) survey.dataset_digest += " --unknown " + unknown;
   return survey;
 }
 

@@ -84,7 +84,9 @@ CaseIds IdsOf(const CaseList& list);
 struct CaseSurvey {
   std::int64_t num_selected = 0;
   std::string case_list_digest;  ///< SHA-256 of the selected ids, a line each.
-  std::string dataset_digest;    ///< As DatasetDigest.
+  /// As DatasetDigest; behind it the rule for unknown ground, where the user
+  /// gave one.
+  std::string dataset_digest;
 };
 
 /// Reads all cases. Errors: those of CheckCases; a selected id that no case

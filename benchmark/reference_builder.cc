@@ -51,9 +51,10 @@ Result<ReferencePool> BuildGeneratedPool(std::uint64_t seed, int count) {
   return TooFew(pairs.size(), count);
 }
 
-Result<ReferencePool> BuildDatasetPool(const std::string& folder, int count) {
+Result<ReferencePool> BuildDatasetPool(const std::string& folder, int count,
+                                       const UnknownGround& unknown) {
   TERRA_REQUIRE(count >= 1);
-  const auto dataset = OpenDataset(folder);
+  const auto dataset = OpenDataset(folder, unknown);
   if (!dataset) return dataset.error();
   auto cases = CaseReader::Open(folder);
   if (!cases) return cases.error();

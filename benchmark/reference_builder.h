@@ -4,6 +4,7 @@
 #include <string>
 
 #include "advisor/reference_pool.h"
+#include "terrain/files/map_file.h"
 #include "terrain/result.h"
 
 namespace terra::benchmark {
@@ -22,7 +23,8 @@ Result<advisor::ReferencePool> BuildGeneratedPool(std::uint64_t seed,
 
 /// The same from the cases of a dataset, for its legend, in its order; one pair
 /// a map. Column `sequence` (RUGD) goes along.
-Result<advisor::ReferencePool> BuildDatasetPool(const std::string& folder,
-                                                int count);
+/// `unknown`: of the dataset's ROS maps.
+Result<advisor::ReferencePool> BuildDatasetPool(
+    const std::string& folder, int count, const UnknownGround& unknown = {});
 
 }  // namespace terra::benchmark

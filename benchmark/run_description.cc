@@ -194,7 +194,11 @@ Status WriteRunDescription(const RunDescription& d, const std::string& path) {
     document["recorded"] = {{"first", d.recorded.first},
                             {"last", d.recorded.last}};
   }
-  return WriteWholeFile(path, document.dump(2) + "\n");
+  // Names of files need not be UTF-8, which JSON must be.
+  return WriteWholeFile(
+      path,
+      document.dump(2, ' ', false, ordered_json::error_handler_t::replace) +
+          "\n");
 }
 
 Result<RunDescription> ReadRunDescription(const std::string& path) {

@@ -1,11 +1,13 @@
 // terra-map: the map server.
-// Reads a map file (again when it changes) and listens to MAP_REQUEST;
-// publishes MAP_HEADER, MAP_TILE, STATUS, CONFIG; exits when asked to (SIGINT,
-// SIGTERM), or when the map cannot be read at start or there is no bus.
+// Reads a map file, again when it or a file that belongs to it changes; listens
+// to MAP_REQUEST; publishes MAP_HEADER, MAP_TILE, STATUS, CONFIG; exits when
+// asked to (SIGINT, SIGTERM), or when the map cannot be read at start or there
+// is no bus.
 #include <map>
 
 #include <CLI/CLI.hpp>
 
+#include "bus/map_file_options.h"
 #include "bus/map_node.h"
 #include "bus/process.h"
 
@@ -22,6 +24,7 @@ int main(int argc, char** argv) {
     app.add_option("--map", path, "PNG, MovingAI .map or ROS .yaml file");
     app.add_option("--legend", options.legend,
                    "built-in legend or CSV file (default: the format's)");
+    terra::bus::AddUnknownOption(app, options.unknown);
     app.add_option("--corner-cutting", options.cost_model.corner_cutting,
                    "may a diagonal step pass between two blocked cells")
         ->transform(CLI::CheckedTransformer(

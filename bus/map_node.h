@@ -1,18 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bus/map_sender.h"
 #include "bus/node.h"
+#include "terrain/files/file_watch.h"
 #include "terrain/files/map_file.h"
 
 namespace terra::bus {
 
 /// The map server: reads a map file, serves it by tiles, and reads it again
-/// when it changes. A file that cannot be read later leaves the map in force as
-/// it is; the heartbeat says why.
+/// when it, its legend or a picture that it names changes. Files that cannot be
+/// read later leave the map in force as it is; the heartbeat says why.
 class MapNode : public Node {
  public:
   MapNode(std::string path, MapFileOptions options, Outbox& out);
@@ -26,15 +28,17 @@ class MapNode : public Node {
   void AddCounters(Counters& counters) const override;
 
  private:
+  void Serve();
   void LookAtFiles();
 
   std::string path_;
   MapFileOptions options_;
   MapSender sender_;
+  FileWatch watch_;
+  std::optional<MapFile> read_;  ///< Not yet served.
+  std::vector<std::string> said_;
   std::string last_error_;
-  std::string loaded_stamp_;
-  std::string seen_stamp_;
-  Periodic look_{std::chrono::milliseconds(500)};
+  Periodic look_{std::chrono::milliseconds(FileWatch::kPeriodMs)};
   std::int64_t loads_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bus/build_id.h"
+#include "bus/decimal_options.h"
 #include "bus/heartbeat.h"
 #include "bus/lcm_url.h"
 #include "bus/log.h"
@@ -83,6 +84,7 @@ int ParseAndServe(const ProcessSpec& spec, int argc, char** argv) {
       ->configurable(false);
   app.set_version_flag("--version", spec.program + " " + BuildId());
   if (spec.add_options) spec.add_options(app);
+  TakeDecimalNumbersOnly(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@
 
 #include "advisor/llm_options.h"
 #include "benchmark/batch.h"
+#include "bus/map_file_options.h"
 #include "cli/bench_commands.h"
 #include "cli/case_selection.h"
 #include "cli/legend_notice.h"
@@ -25,6 +26,7 @@ struct ExportArguments {
   std::string cases;
   benchmark::RunOptions options;
   benchmark::BatchFolder folder;
+  UnknownGround unknown;
   bool json = false;
 };
 
@@ -37,9 +39,10 @@ struct ImportArguments {
 };
 
 int RunExport(ExportArguments& arguments) {
-  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset =
+      OpenDataset(arguments.dataset, arguments.unknown);
   if (!dataset.ok()) return Fail(dataset.error());
-  NoteDefaultLegend(*dataset);
+  NoteHowMapsAreRead(*dataset);
   auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);
@@ -128,6 +131,7 @@ void AddBenchExportBatch(CLI::App& bench, int& exit_code) {
   AddStrideOption(command, arguments->options.lattice.stride);
   AddJointsOption(command, arguments->options.lattice.joints);
   AddCostModelOptions(command, arguments->options.cost_model);
+  bus::AddUnknownOption(command, arguments->unknown);
   command
       .add_option("--except", arguments->folder.except,
                   "Leave out what this recording has an answer to")

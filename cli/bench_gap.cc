@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmark/gap.h"
+#include "bus/map_file_options.h"
 #include "cli/bench_commands.h"
 #include "cli/legend_notice.h"
 #include "cli/map_arguments.h"
@@ -16,6 +17,7 @@ namespace {
 
 struct GapArguments {
   std::string dataset;
+  UnknownGround unknown;
   benchmark::GapOptions options;
   std::string out;
 };
@@ -35,9 +37,10 @@ void PrintSummary(const std::vector<benchmark::GapSummary>& summaries) {
 }
 
 int RunGap(const GapArguments& arguments) {
-  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset =
+      OpenDataset(arguments.dataset, arguments.unknown);
   if (!dataset.ok()) return Fail(dataset.error());
-  NoteDefaultLegend(*dataset);
+  NoteHowMapsAreRead(*dataset);
   const auto summaries =
       benchmark::MeasureGaps(*dataset, arguments.options, arguments.out);
   if (!summaries.ok()) return Fail(summaries.error());
@@ -67,6 +70,7 @@ void AddBenchGap(CLI::App& bench, int& exit_code) {
       ->type_name("F.csv");
   AddJointsOption(command, arguments->options.joints);
   AddCostModelOptions(command, arguments->options.cost_model);
+  bus::AddUnknownOption(command, arguments->unknown);
   AddJobsOption(command, arguments->options.jobs);
   command.footer(
       "Example:\n"

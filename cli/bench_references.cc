@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmark/reference_builder.h"
+#include "bus/map_file_options.h"
 #include "cli/bench_commands.h"
 #include "cli/output.h"
 #include "output/output_file.h"
@@ -18,13 +19,15 @@ struct ReferencesArguments {
   std::uint64_t seed = benchmark::kPoolSeed;
   int count = 20;
   std::string out;
+  UnknownGround unknown;
 };
 
 int RunReferences(const ReferencesArguments& arguments) {
   const auto pool =
       arguments.dataset.empty()
           ? benchmark::BuildGeneratedPool(arguments.seed, arguments.count)
-          : benchmark::BuildDatasetPool(arguments.dataset, arguments.count);
+          : benchmark::BuildDatasetPool(arguments.dataset, arguments.count,
+                                        arguments.unknown);
   if (!pool.ok()) return Fail(pool.error());
   const Status written = WriteWholeFile(arguments.out, pool->Serialize());
   if (!written.ok()) return Fail(written.error());
@@ -52,6 +55,7 @@ void AddBenchReferences(CLI::App& bench, int& exit_code) {
   command.add_option("--count", arguments->count, "Pairs to build at most")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000));
+  bus::AddUnknownOption(command, arguments->unknown);
   command.add_option("--out", arguments->out, "File to write")
       ->required()
       ->type_name("F.jsonl");

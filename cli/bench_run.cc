@@ -15,6 +15,7 @@
 #include "benchmark/llm_method.h"
 #include "benchmark/run.h"
 #include "bus/build_id.h"
+#include "bus/map_file_options.h"
 #include "cli/bench_commands.h"
 #include "cli/case_selection.h"
 #include "cli/legend_notice.h"
@@ -32,6 +33,7 @@ using benchmark::MethodRun;
 
 struct RunArguments {
   std::string dataset;
+  UnknownGround unknown;
   std::string method;
   std::vector<std::string> backends;
   bool gate = false;
@@ -105,9 +107,10 @@ Result<std::vector<MethodRun>> ChooseMethods(const RunArguments& arguments) {
 }
 
 int RunRun(RunArguments& arguments, const std::string& command_line) {
-  const Result<DatasetFolder> dataset = OpenDataset(arguments.dataset);
+  const Result<DatasetFolder> dataset =
+      OpenDataset(arguments.dataset, arguments.unknown);
   if (!dataset.ok()) return Fail(dataset.error());
-  NoteDefaultLegend(*dataset);
+  NoteHowMapsAreRead(*dataset);
   auto cases = SelectCases(arguments.cases);
   if (!cases.ok()) return Fail(cases.error());
   arguments.options.cases = *std::move(cases);
@@ -187,6 +190,7 @@ void AddOptions(CLI::App& command, RunArguments& arguments) {
   AddStrideOption(command, arguments.options.lattice.stride);
   AddJointsOption(command, arguments.options.lattice.joints);
   AddCostModelOptions(command, arguments.options.cost_model);
+  bus::AddUnknownOption(command, arguments.unknown);
   AddJobsOption(command, arguments.options.jobs);
 }
 

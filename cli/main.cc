@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bus/decimal_options.h"
 #include "bus/usage_message.h"
 #include "cli/commands.h"
 #include "cli/output.h"
@@ -42,6 +43,7 @@ int Run(int argc, char** argv) {
       ".map,\nROS map_server .yaml. Cells are X,Y from the top left corner.\n"
       "'terra COMMAND --help' shows the options of a command and an example.");
   AddCommands(app, exit_code);
+  terra::bus::TakeDecimalNumbersOnly(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,9 +1,11 @@
 #include "cli/map_arguments.h"
 
+#include <iostream>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "bus/map_file_options.h"
 #include "terrain/route_text.h"
 
 namespace terra::cli {
@@ -66,6 +68,7 @@ void AddMapFileOptions(CLI::App& command, MapArguments& arguments) {
 
 void AddMapOptions(CLI::App& command, MapArguments& arguments) {
   AddMapFileOptions(command, arguments);
+  bus::AddUnknownOption(command, arguments.options.unknown);
   AddCostModelOptions(command, arguments.options.cost_model);
 }
 
@@ -111,7 +114,14 @@ void AddProblemOptions(CLI::App& command, ProblemArguments& arguments) {
 Result<TerrainMap> LoadMap(const MapArguments& arguments) {
   Result<MapFile> file = ReadMap(arguments.path, arguments.options);
   if (!file.ok()) return file.error();
+  SayNotices(*file);
   return std::move(file->map);
+}
+
+void SayNotices(const MapFile& file) {
+  for (const std::string& notice : file.notices) {
+    std::cerr << "terra: " << notice << '\n';
+  }
 }
 
 Status CheckEnds(const TerrainMap& map, const ProblemArguments& problem) {

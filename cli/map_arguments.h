@@ -26,7 +26,7 @@ struct MapArguments {
 /// Adds --map and --legend.
 void AddMapFileOptions(CLI::App& command, MapArguments& arguments);
 
-/// Adds --map, --legend and the cost model.
+/// Adds --map, --legend, --unknown and the cost model.
 void AddMapOptions(CLI::App& command, MapArguments& arguments);
 
 /// Adds a required option of the form X,Y.
@@ -54,8 +54,11 @@ CLI::Option* AddRouteOption(CLI::App& command, const std::string& name,
 /// Adds --stride of the baseline's lattice.
 void AddStrideOption(CLI::App& command, int& stride);
 
-/// Reads the map.
+/// Reads the map and says its notices on stderr.
 Result<TerrainMap> LoadMap(const MapArguments& arguments);
+
+/// Says on stderr what the user should know of a map.
+void SayNotices(const MapFile& file);
 
 /// Errors: start or goal is outside the map or impassable.
 Status CheckEnds(const TerrainMap& map, const ProblemArguments& problem);

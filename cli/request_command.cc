@@ -10,6 +10,7 @@
 #include "bus/bus.h"
 #include "bus/codec.h"
 #include "bus/event_loop.h"
+#include "bus/map_file_options.h"
 #include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
@@ -92,6 +93,7 @@ int Ask(RequestArguments& arguments) {
     const Result<MapFile> map =
         ReadMap(arguments.map.path, arguments.map.options);
     if (!map) return FailRequest(map.error().message);
+    SayNotices(*map);
     plan.map_id = MapId(map->map);
   }
   const bus::StopSignal stop;
@@ -139,6 +141,7 @@ void AddRequestCommand(CLI::App& app, int& exit_code) {
                       "only compared with the map in force");
   command->add_option("--legend", arguments->map.options.legend,
                       "legend of --map");
+  bus::AddUnknownOption(*command, arguments->map.options.unknown);
   AddCostModelOptions(*command, arguments->map.options.cost_model);
   command
       ->add_option("--wait", arguments->wait_s,

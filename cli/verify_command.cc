@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bus/map_file_options.h"
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
 #include "cli/output.h"
@@ -117,6 +118,7 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
 
   const auto model = std::make_shared<CostModel>();
   AddCostModelOptions(command, *model);
+  bus::AddUnknownOption(command, many->unknown);
 
   CLI::App& single = *command.add_option_group("one route");
   AddMapFileOptions(single, one->problem.map);
@@ -150,6 +152,7 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
           "--dataset, --routes and --out");
     }
     one->problem.map.options.cost_model = *model;
+    one->problem.map.options.unknown = many->unknown;
     exit_code = is_single ? RunVerify(*one) : RunVerifyDataset(*many, *model);
   });
 }

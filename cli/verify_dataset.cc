@@ -94,9 +94,10 @@ std::string VerdictsCsv(const CsvTable& routes,
 
 Status VerifyDataset(const VerifyDatasetArguments& arguments,
                      const CostModel& model) {
-  const Result<Dataset> dataset = ReadDataset(arguments.dataset);
+  const Result<Dataset> dataset =
+      ReadDataset(arguments.dataset, arguments.unknown);
   if (!dataset.ok()) return dataset.error();
-  NoteDefaultLegend(*dataset);
+  NoteHowMapsAreRead(*dataset);
   const Result<CsvTable> routes =
       ReadCsv(arguments.routes, {"case_id", "k", "route"});
   if (!routes.ok()) return routes.error();

@@ -15,6 +15,7 @@ struct VerifyDatasetArguments {
   std::string dataset;
   std::string routes;  ///< CSV: case_id, k, route.
   std::string out;     ///< CSV: case_id, k, code, cost.
+  UnknownGround unknown;
 };
 
 void AddVerifyDatasetOptions(CLI::App& command,

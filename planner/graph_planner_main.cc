@@ -1,15 +1,15 @@
 // terra-graph-planner: a baseline planner on a graph of surveyed waypoints, in
 // the place of terra-planner; the worked example of docs/own-planner.md.
-// Listens to the map, PLAN_REQUEST and DEPLOYED; publishes BASELINE, STATUS,
-// CONFIG; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
+// Reads the graph, again when its files change. Listens to the map,
+// PLAN_REQUEST and DEPLOYED; publishes BASELINE, STATUS, CONFIG; exits when
+// asked to (SIGINT, SIGTERM) or when it has no bus.
 #include <memory>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "bus/process.h"
-#include "planner/graph_file.h"
-#include "planner/planner_node.h"
+#include "planner/graph_planner_node.h"
 #include "planner/waypoint_graph.h"
 
 int main(int argc, char** argv) {
@@ -31,18 +31,11 @@ int main(int argc, char** argv) {
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
-    auto graph = terra::planner::ReadWaypointGraph(folder);
-    if (!graph.ok()) return graph.error();
-    return std::unique_ptr<terra::bus::Node>(
-        std::make_unique<terra::planner::PlannerNode>(
-            context.name,
-            [graph = *std::move(graph), reach](const terra::TerrainMap& map,
-                                               terra::Cell start,
-                                               terra::Cell goal) {
-              return terra::planner::PlanOnGraph(map, graph, start, goal,
-                                                 reach);
-            },
-            context.out));
+    auto node = std::make_unique<terra::planner::GraphPlannerNode>(
+        context.name, folder, reach, context.out);
+    const terra::Status loaded = node->Load();
+    if (!loaded.ok()) return loaded.error();
+    return std::unique_ptr<terra::bus::Node>(std::move(node));
   };
   return terra::bus::RunProcess(spec, argc, argv);
 }

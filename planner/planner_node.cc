@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "bus/codec.h"
 #include "terrain/digest.h"
@@ -85,6 +86,11 @@ void PlannerNode::OnDeployed(const terra_msg::deployed_t& message,
 void PlannerNode::OnRequestChanged(bus::Time now) {
   has_baseline_ = false;
   no_map_at_ = map_.map() ? bus::kNever : now + kMapPatience;
+  Plan(now);
+}
+
+void PlannerNode::PlanWith(PlanFunction plan, bus::Time now) {
+  plan_ = std::move(plan);
   Plan(now);
 }
 

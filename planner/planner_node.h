@@ -19,7 +19,7 @@ using PlanFunction =
 /// publishes BASELINE at once and then 5 times a second. It waits for nobody.
 ///
 /// A planner of one's own is this node with another PlanFunction (see
-/// graph_planner_main.cc), or any program that publishes BASELINE.
+/// main.cc), or any program that publishes BASELINE.
 class PlannerNode : public bus::Node {
  public:
   PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out);
@@ -28,6 +28,11 @@ class PlannerNode : public bus::Node {
   std::string state() const override;
   std::string last_error() const override { return map_.last_error(); }
   void AddCounters(bus::Counters& counters) const override;
+
+ protected:
+  /// For a planner whose graph has changed: plans the request in force with
+  /// another function, now and from now on.
+  void PlanWith(PlanFunction plan, bus::Time now);
 
  private:
   void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "terrain/files/ascii_case.h"
+
 namespace terra {
 namespace {
 
@@ -156,7 +158,7 @@ Result<DatasetCase> CaseReader::Parse(CsvRow row) const {
       result.case_id = std::move(field);
     } else if (column == "map") {
       result.map = std::move(field);
-    } else if (column == "group") {
+    } else if (EqualsInAnyCase(column, "group")) {
       result.group = std::move(field);
     } else if (IsExtraColumn(column)) {
       result.extra[column] = std::move(field);

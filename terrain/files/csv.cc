@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "terrain/files/ascii_case.h"
 #include "terrain/files/whole_file.h"
 
 namespace terra {
@@ -15,6 +16,16 @@ Error LineError(const std::string& name, int line, const std::string& what) {
                name + ":" + std::to_string(line) + ": " + what};
 }
 
+bool IsBlank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+// Is the first line of this text a comment?
+bool BeginsWithComment(std::string_view text) {
+  const auto first = std::find_if_not(text.begin(), text.end(), IsBlank);
+  return first != text.end() && *first == '#';
+}
+
 // Cuts a text into records; a cursor that counts lines.
 class CsvScanner {
  public:
@@ -22,7 +33,13 @@ class CsvScanner {
       : text_(text), name_(name), line_(line) {}
 
   bool AtEnd() const { return at_ == text_.size(); }
-  int line() const { return line_; }
+
+  void SkipComments() {
+    while (BeginsWithComment(text_.substr(at_))) {
+      at_ = std::min(text_.find('\n', at_), text_.size() - 1) + 1;
+      ++line_;
+    }
+  }
 
   Result<CsvRow> Next() {
     CsvRow row;
@@ -50,9 +67,14 @@ class CsvScanner {
     return true;
   }
 
+  void SkipBlanks() {
+    while (!AtEnd() && IsBlank(Peek())) ++at_;
+  }
+
   // Takes one field, up to the comma or line end behind it.
   Status TakeField(CsvRow& row) {
     std::string& field = row.fields.emplace_back();
+    SkipBlanks();
     if (AtEnd() || Peek() != '"') {
       while (!AtLineEnd() && Peek() != ',') {
         if (Peek() == '"') {
@@ -60,6 +82,7 @@ class CsvScanner {
         }
         field += text_[at_++];
       }
+      while (!field.empty() && IsBlank(field.back())) field.pop_back();
       return Done{};
     }
     ++at_;
@@ -76,6 +99,7 @@ class CsvScanner {
   }
 
   Status CheckFieldEnd() {
+    SkipBlanks();
     if (AtLineEnd() || Peek() == ',') return Done{};
     return LineError(name_, line_, "text behind a closing quote");
   }
@@ -90,13 +114,31 @@ bool IsEmptyLine(const CsvRow& row) {
   return row.fields.size() == 1 && row.fields[0].empty();
 }
 
-Status CheckHeader(const std::vector<std::string>& header,
-                   const std::string& name) {
-  std::vector<std::string> sorted = header;
+// Why a header is none of a CSV file, where that is plain; else empty.
+std::string WhyNoHeader(const std::vector<std::string>& header) {
+  const std::string& first = header.front();
+  if (first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF")) {
+    return "this is UTF-16 text; save it as CSV in UTF-8";
+  }
+  if (header.size() > 1) return "";
+  for (const auto& [separator, name] :
+       {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
+    if (first.find(separator) == std::string::npos) continue;
+    return std::string("the fields are separated by ") + name +
+           "; write commas (and numbers with a point)";
+  }
+  return "";
+}
+
+Status CheckHeader(const CsvRow& header, const std::string& name) {
+  const std::string why = WhyNoHeader(header.fields);
+  if (!why.empty()) return LineError(name, header.line, why);
+  std::vector<std::string> sorted = header.fields;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice != sorted.end()) {
-    return LineError(name, 1, "the column '" + *twice + "' comes twice");
+    return LineError(name, header.line,
+                     "the column '" + *twice + "' comes twice");
   }
   return Done{};
 }
@@ -107,26 +149,46 @@ Status CheckWidth(const CsvRow& row, const std::vector<std::string>& header,
   return LineError(
       name, row.line,
       std::to_string(row.fields.size()) + " fields where the header has " +
-          std::to_string(header.size()) + " (fields with a comma need quotes)");
+          std::to_string(header.size()) +
+          " (a field with a comma needs quotes, a number has a point: 1.5)");
 }
 
 Error NoHeader(const std::string& name) {
   return {ErrorCode::kInvalid, name + ": empty, no header row"};
 }
 
-Status CheckColumns(const CsvTable& table, const std::string& path,
+// Gives a column its usual name where one, and no other, has it in capitals.
+void RenameColumn(CsvTable& table, std::string_view column) {
+  const auto is_it = [&](const std::string& name) {
+    return EqualsInAnyCase(name, column);
+  };
+  auto& header = table.header;
+  if (std::count_if(header.begin(), header.end(), is_it) != 1) return;
+  *std::find_if(header.begin(), header.end(), is_it) = column;
+}
+
+Status CheckColumns(CsvTable& table, const std::string& path, int line,
                     std::initializer_list<std::string_view> columns) {
   for (const std::string_view column : columns) {
+    if (table.Column(column) < 0) RenameColumn(table, column);
     if (table.Column(column) >= 0) continue;
     std::string wanted;
     for (const std::string_view name : columns) {
       wanted += (wanted.empty() ? "" : ",") + std::string(name);
     }
-    return LineError(path, 1,
+    return LineError(path, line,
                      "no column '" + std::string(column) +
                          "'; the header must have " + wanted);
   }
   return Done{};
+}
+
+// A text that begins in this line of a file.
+std::string_view WithoutByteOrderMark(std::string_view text, int line) {
+  if (line == 1 && text.starts_with(kCsvByteOrderMark)) {
+    text.remove_prefix(kCsvByteOrderMark.size());
+  }
+  return text;
 }
 
 }  // namespace
@@ -137,20 +199,20 @@ int CsvTable::Column(std::string_view name) const {
 }
 
 Result<CsvTable> ParseCsv(std::string_view text, const std::string& name) {
-  if (text.starts_with(kCsvByteOrderMark)) {
-    text.remove_prefix(kCsvByteOrderMark.size());
-  }
   CsvTable table;
-  CsvScanner scanner(text, name, 1);
-  while (!scanner.AtEnd()) {
+  CsvScanner scanner(WithoutByteOrderMark(text, 1), name, 1);
+  for (;;) {
+    scanner.SkipComments();
+    if (scanner.AtEnd()) break;
     Result<CsvRow> row = scanner.Next();
     if (!row.ok()) return row.error();
     if (IsEmptyLine(*row)) continue;
     const bool first = table.header.empty();
-    const Status checked = first ? CheckHeader(row->fields, name)
-                                 : CheckWidth(*row, table.header, name);
+    const Status checked =
+        first ? CheckHeader(*row, name) : CheckWidth(*row, table.header, name);
     if (!checked.ok()) return checked.error();
     if (first) {
+      table.header_line = row->line;
       table.header = std::move(row->fields);
     } else {
       table.rows.push_back(*std::move(row));
@@ -171,7 +233,8 @@ Result<CsvTable> ReadCsv(const std::string& path,
   if (!text.ok()) return text.error();
   Result<CsvTable> table = ParseCsv(*text, path);
   if (!table.ok()) return table.error();
-  const Status checked = CheckColumns(*table, path, columns);
+  const Status checked =
+      CheckColumns(*table, path, table->header_line, columns);
   if (!checked.ok()) return checked.error();
   return table;
 }
@@ -184,10 +247,12 @@ Result<CsvReader> CsvReader::Open(
   Result<std::optional<CsvRow>> header = reader.NextRecord();
   if (!header.ok()) return header.error();
   if (!header->has_value()) return NoHeader(path);
-  reader.table_.header = std::move((*header)->fields);
-  const Status checked = CheckHeader(reader.table_.header, path);
+  const Status checked = CheckHeader(**header, path);
   if (!checked.ok()) return checked.error();
-  const Status complete = CheckColumns(reader.table_, path, columns);
+  reader.table_.header_line = (*header)->line;
+  reader.table_.header = std::move((*header)->fields);
+  const Status complete =
+      CheckColumns(reader.table_, path, reader.table_.header_line, columns);
   if (!complete.ok()) return complete.error();
   return reader;
 }
@@ -206,10 +271,8 @@ Result<std::optional<CsvRow>> CsvReader::NextRecord() {
     const Result<bool> taken = TakeRecord();
     if (!taken.ok()) return taken.error();
     if (!*taken) return std::optional<CsvRow>();
-    std::string_view record = record_;
-    if (first == 1 && record.starts_with(kCsvByteOrderMark)) {
-      record.remove_prefix(kCsvByteOrderMark.size());
-    }
+    const std::string_view record = WithoutByteOrderMark(record_, first);
+    if (BeginsWithComment(record)) continue;
     CsvScanner scanner(record, path_, first);
     if (scanner.AtEnd()) continue;  // Nothing but the byte order mark.
     Result<CsvRow> row = scanner.Next();
@@ -218,8 +281,10 @@ Result<std::optional<CsvRow>> CsvReader::NextRecord() {
   }
 }
 
-// An odd number of quotes so far means that a line break is inside a field.
+// The quotes of a comment mean nothing. Otherwise an odd number of them means
+// that a line break is inside a field.
 Result<bool> CsvReader::TakeRecord() {
+  const int first_line = lines_.place().line;
   record_.clear();
   bool inside = false;
   do {
@@ -227,6 +292,11 @@ Result<bool> CsvReader::TakeRecord() {
     if (!taken.ok()) return taken.error();
     if (!*taken) break;
     const std::string& line = lines_.line();
+    const std::string_view text = WithoutByteOrderMark(line, first_line);
+    if (record_.empty() && BeginsWithComment(text)) {
+      record_ = line;
+      break;
+    }
     if (std::count(line.begin(), line.end(), '"') % 2 == 1) inside = !inside;
     record_ += line;
   } while (inside && record_.size() < LineReader::kMaxLineBytes);

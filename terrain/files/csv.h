@@ -21,6 +21,7 @@ struct CsvRow {
 
 /// A CSV file with a header row; every row has as many fields as the header.
 struct CsvTable {
+  int header_line = 1;
   std::vector<std::string> header;
   std::vector<CsvRow> rows;
 
@@ -29,17 +30,19 @@ struct CsvTable {
 };
 
 /// Reads CSV after RFC 4180: comma, double quotes, quotes doubled inside them;
-/// LF or CRLF, a byte order mark and empty lines are passed over.
+/// LF or CRLF, a byte order mark and empty lines are passed over. Beyond it,
+/// for tables written by hand: blanks around fields do not count, and lines
+/// that begin with # are comments (a first field that does needs quotes).
 /// `name` is used in errors, which name the line.
 Result<CsvTable> ParseCsv(std::string_view text, const std::string& name);
 
 /// Reads a CSV file that must have these columns, in any order and among
-/// others.
+/// others; their names may be in capitals.
 Result<CsvTable> ReadCsv(const std::string& path,
                          std::initializer_list<std::string_view> columns);
 
 /// Reads one record, which may have line breaks in quotes; it begins in this
-/// line.
+/// line and is no comment.
 Result<CsvRow> ParseCsvRecord(std::string_view record, const std::string& name,
                               int line);
 
@@ -80,7 +83,8 @@ std::string CsvLine(const std::vector<std::string>& fields);
 /// double, or "inf".
 std::string FormatNumber(double value);
 
-/// Reads a whole field as a number ("inf" included) or integer.
+/// Reads a whole field as a number or integer. Infinity is `inf` or `infinity`
+/// in capitals or not.
 Result<double> ParseNumber(std::string_view text);
 Result<int> ParseInteger(std::string_view text);
 

@@ -30,13 +30,20 @@ Status ReadJson(const std::string& path, DatasetFolder& dataset) {
     return text.error();
   }
   dataset.json = std::move(*text);
-  try {
-    const auto json = nlohmann::json::parse(dataset.json);
-    dataset.name = json.value("name", "");
-    dataset.version = json.value("version", "");
-    dataset.digest = json.value("digest", "");
-  } catch (const nlohmann::json::exception& error) {
-    return Error{ErrorCode::kInvalid, path + ": " + error.what()};
+  const auto json = nlohmann::json::parse(dataset.json, nullptr, false);
+  if (!json.is_object()) {
+    return Error{ErrorCode::kInvalid,
+                 path + ": not a JSON object, or not in UTF-8"};
+  }
+  for (const auto& [key, value] : {std::pair{"name", &dataset.name},
+                                   std::pair{"version", &dataset.version},
+                                   std::pair{"digest", &dataset.digest}}) {
+    if (!json.contains(key)) continue;
+    if (!json.at(key).is_string()) {
+      return Error{ErrorCode::kInvalid,
+                   path + ": '" + key + "' must be a text in quotes"};
+    }
+    *value = json.at(key).get<std::string>();
   }
   return Done{};
 }
@@ -58,21 +65,23 @@ IdIndex IndexOf(const std::vector<DatasetCase>& cases) {
   return IdIndex(std::move(ids));
 }
 
-Result<DatasetFolder> OpenDataset(const std::string& folder) {
+Result<DatasetFolder> OpenDataset(const std::string& folder,
+                                  const UnknownGround& unknown) {
   const fs::path root(folder);
   const std::string legend_path = (root / "legend.csv").string();
   Result<Legend> legend = fs::exists(legend_path)
                               ? ReadLegend(legend_path)
                               : Result<Legend>(MultiTerraPathLegend());
   if (!legend.ok()) return legend.error();
-  DatasetFolder dataset{folder, "", "", "", "", *std::move(legend)};
+  DatasetFolder dataset{folder, "", "", "", "", *std::move(legend), unknown};
   const Status json = ReadJson((root / "dataset.json").string(), dataset);
   if (!json.ok()) return json.error();
   return dataset;
 }
 
-Result<Dataset> ReadDataset(const std::string& folder) {
-  Result<DatasetFolder> opened = OpenDataset(folder);
+Result<Dataset> ReadDataset(const std::string& folder,
+                            const UnknownGround& unknown) {
+  Result<DatasetFolder> opened = OpenDataset(folder, unknown);
   if (!opened.ok()) return opened.error();
   Dataset dataset{*std::move(opened), {}};
   const Status read = CheckCases(folder, [&](DatasetCase c) {
@@ -82,15 +91,20 @@ Result<Dataset> ReadDataset(const std::string& folder) {
   return dataset;
 }
 
+MapFileOptions OptionsOfMaps(const DatasetFolder& dataset,
+                             const CostModel& model) {
+  const std::string legend_path =
+      (fs::path(dataset.folder) / "legend.csv").string();
+  return {fs::exists(legend_path) ? legend_path : "multiterrapath", model,
+          dataset.unknown};
+}
+
 Result<TerrainMap> ReadCaseMap(const DatasetFolder& dataset,
                                const DatasetCase& dataset_case,
                                const CostModel& model) {
-  const fs::path root(dataset.folder);
-  const std::string legend_path = (root / "legend.csv").string();
-  MapFileOptions options;
-  options.legend = fs::exists(legend_path) ? legend_path : "multiterrapath";
-  options.cost_model = model;
-  Result<MapFile> file = ReadMap((root / dataset_case.map).string(), options);
+  Result<MapFile> file =
+      ReadMap((fs::path(dataset.folder) / dataset_case.map).string(),
+              OptionsOfMaps(dataset, model));
   if (!file.ok()) return file.error();
   return std::move(file->map);
 }

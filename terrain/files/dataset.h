@@ -9,6 +9,7 @@
 
 #include "terrain/cell.h"
 #include "terrain/files/id_index.h"
+#include "terrain/files/map_file.h"
 #include "terrain/legend.h"
 #include "terrain/map.h"
 #include "terrain/result.h"
@@ -40,6 +41,7 @@ struct DatasetFolder {
   std::string digest;   ///< dataset.json "digest"; empty where it has none.
   std::string json;     ///< dataset.json as it stands.
   Legend legend;
+  UnknownGround unknown = {};  ///< Of its ROS maps.
 };
 
 /// The same with its cases.
@@ -56,11 +58,17 @@ IdIndex IndexOf(const std::vector<DatasetCase>& cases);
 
 /// Reads legend.csv and dataset.json. A missing dataset.json leaves name,
 /// version, digest and json empty. Errors: name the file and line.
-Result<DatasetFolder> OpenDataset(const std::string& folder);
+Result<DatasetFolder> OpenDataset(const std::string& folder,
+                                  const UnknownGround& unknown = {});
 
 /// Reads the folder's tables, no maps. Errors: those of OpenDataset and
 /// CheckCases.
-Result<Dataset> ReadDataset(const std::string& folder);
+Result<Dataset> ReadDataset(const std::string& folder,
+                            const UnknownGround& unknown = {});
+
+/// How the maps of a dataset are read.
+MapFileOptions OptionsOfMaps(const DatasetFolder& dataset,
+                             const CostModel& model = {});
 
 /// Reads the map of a case.
 Result<TerrainMap> ReadCaseMap(const DatasetFolder& dataset,

@@ -9,12 +9,13 @@
 namespace terra {
 namespace {
 
+bool IsPgmSpace(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
 // Reads the next number of a PGM header; comments run from # to the line end.
 std::int64_t TakePgmNumber(std::string_view bytes, std::size_t& at) {
-  const auto is_space = [](char c) {
-    return c == ' ' || (c >= '\t' && c <= '\r');
-  };
-  while (at < bytes.size() && (is_space(bytes[at]) || bytes[at] == '#')) {
+  while (at < bytes.size() && (IsPgmSpace(bytes[at]) || bytes[at] == '#')) {
     if (bytes[at] == '#') {
       at = std::min(bytes.find('\n', at), bytes.size());
     } else {
@@ -45,9 +46,14 @@ Status CheckMapSize(std::int64_t width, std::int64_t height,
 }
 
 Result<Pixels> DecodePgm(std::string_view bytes, const std::string& name) {
-  if (!bytes.starts_with("P5")) {
+  const auto is_space_at = [&](std::size_t at) {
+    return at < bytes.size() && IsPgmSpace(bytes[at]);
+  };
+  if (!bytes.starts_with("P5") || !is_space_at(2)) {
     return Error{ErrorCode::kUnsupported,
-                 name + ": neither a binary PGM (P5) nor a PNG"};
+                 name +
+                     ": neither a binary PGM (P5) nor a PNG; convert the "
+                     "picture to PNG"};
   }
   std::size_t at = 2;
   const std::int64_t width = TakePgmNumber(bytes, at);
@@ -60,6 +66,11 @@ Result<Pixels> DecodePgm(std::string_view bytes, const std::string& name) {
                  name + ": grey values up to " + std::to_string(max_value) +
                      "; only 8-bit PGM (255) is taken"};
   }
+  if (at < bytes.size() && !is_space_at(at)) {
+    return Error{
+        ErrorCode::kInvalid,
+        name + ": the PGM header must end with 255 and one white space"};
+  }
   ++at;  // one white space before the data
   const auto wanted = static_cast<std::size_t>(width * height);
   if (bytes.size() < at || bytes.size() - at < wanted) {
@@ -67,6 +78,14 @@ Result<Pixels> DecodePgm(std::string_view bytes, const std::string& name) {
                  name + ": truncated: " + std::to_string(bytes.size()) +
                      " bytes where " + std::to_string(at + wanted) +
                      " are needed"};
+  }
+  const std::string_view rest = bytes.substr(at + wanted);
+  if (!std::all_of(rest.begin(), rest.end(), IsPgmSpace)) {
+    return Error{ErrorCode::kInvalid,
+                 name + ": " + std::to_string(rest.size()) +
+                     " bytes more than the " + std::to_string(width) + " x " +
+                     std::to_string(height) +
+                     " pixels of its header: one of both is wrong"};
   }
   const std::string_view data = bytes.substr(at, wanted);
   return Pixels{static_cast<int>(width),

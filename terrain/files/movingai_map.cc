@@ -43,6 +43,13 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
+// What stands behind the first word of a line.
+std::string_view FieldOf(std::string_view line) {
+  line.remove_prefix(line.find(' '));
+  while (line.starts_with(' ')) line.remove_prefix(1);
+  return line;
+}
+
 struct Header {
   int width = 0;
   int height = 0;
@@ -57,7 +64,11 @@ Result<Header> ReadHeader(Lines& lines) {
       if (header.width > 0 && header.height > 0) return header;
       return lines.Bad("'height H' and 'width W' must stand before 'map'");
     }
-    if (line.empty() || line.starts_with("type ")) continue;
+    if (line.empty()) continue;
+    if (line.starts_with("type ")) {
+      if (FieldOf(line) == "octile") continue;
+      return lines.Bad("only maps of type octile are read");
+    }
     int* side = line.starts_with("height ")  ? &header.height
                 : line.starts_with("width ") ? &header.width
                                              : nullptr;
@@ -65,10 +76,11 @@ Result<Header> ReadHeader(Lines& lines) {
       return lines.Bad(
           "expected 'type', 'height H', 'width W' or 'map' of a MovingAI map");
     }
-    const Result<int> value = ParseInteger(line.substr(line.find(' ') + 1));
+    const Result<int> value = ParseInteger(FieldOf(line));
     if (!value.ok() || *value < 1) {
       return lines.Bad("not a size: " + std::string(line.substr(0, 40)));
     }
+    if (*side != 0) return lines.Bad("this size comes twice");
     *side = *value;
   }
   return lines.Bad("the file ends before the line 'map'");

@@ -6,10 +6,13 @@
 #include <fstream>
 #include <system_error>
 
+#include "terrain/files/file_watch.h"
+
 namespace terra {
 namespace fs = std::filesystem;
 
 Result<std::ifstream> OpenToRead(const std::string& path) {
+  OpenedFiles::Note(path);
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status)) {

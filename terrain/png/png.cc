@@ -57,10 +57,36 @@ class Reader {
     return true;
   }
 
+  // After the header: how ReadRows is to give the pixels.
+  bool Expand() {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_set_expand(png_);
+    png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    return true;
+  }
+
+  // Needs a buffer of one row.
+  bool ReadRows(const PngForm& form, png_bytep row, const TakePngRow& take) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    for (int y = 0; y < form.height; ++y) {
+      png_read_row(png_, row, nullptr);
+      take(form, y, row);
+    }
+    png_read_end(png_, nullptr);
+    return true;
+  }
+
   std::int64_t width() const { return png_get_image_width(png_, info_); }
   std::int64_t height() const { return png_get_image_height(png_, info_); }
   int bit_depth() const { return png_get_bit_depth(png_, info_); }
   int color_type() const { return png_get_color_type(png_, info_); }
+  int channels() const { return png_get_channels(png_, info_); }
+  bool interlaced() const {
+    return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE;
+  }
+  // As stored, or after Expand as given.
+  std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
   bool has_transparent_color() const {
     return png_get_valid(png_, info_, PNG_INFO_tRNS) != 0;
   }
@@ -177,8 +203,7 @@ std::string WhyNotTaken(const Reader& reader) {
   return "";
 }
 
-Status CheckHeader(const Reader& reader, int max_side,
-                   const std::string& name) {
+Status CheckSize(const Reader& reader, int max_side, const std::string& name) {
   if (reader.width() > max_side || reader.height() > max_side) {
     return Error{ErrorCode::kUnsupported,
                  name + ": " + std::to_string(reader.width()) + " x " +
@@ -187,6 +212,10 @@ Status CheckHeader(const Reader& reader, int max_side,
                      " a side are taken: cut it into parts or lower its "
                      "resolution"};
   }
+  return Done{};
+}
+
+Status CheckKind(const Reader& reader, const std::string& name) {
   const std::string refusal = WhyNotTaken(reader);
   if (!refusal.empty()) {
     return Error{ErrorCode::kUnsupported,
@@ -195,6 +224,25 @@ Status CheckHeader(const Reader& reader, int max_side,
                      "RGB (legend colours)"};
   }
   return Done{};
+}
+
+// Do so many bytes of pixels fit into a file of this length? Deflate makes at
+// most 1,032 bytes of one (zlib's technical notes).
+Status CheckLength(std::size_t size, std::string_view png,
+                   const std::string& name) {
+  constexpr std::size_t kMostOfAByte = 1032;
+  if (size / kMostOfAByte <= png.size()) return Done{};
+  return Error{ErrorCode::kInvalid,
+               name + ": the PNG is truncated; copy the file again"};
+}
+
+std::vector<png_bytep> RowsOf(std::vector<std::uint8_t>& bytes,
+                              std::size_t row_bytes) {
+  std::vector<png_bytep> rows;
+  for (std::size_t at = 0; at < bytes.size(); at += row_bytes) {
+    rows.push_back(bytes.data() + at);
+  }
+  return rows;
 }
 
 }  // namespace
@@ -211,8 +259,10 @@ Result<Pixels> DecodePng(std::string_view png, int max_side,
                          const std::string& name) {
   Reader reader(png);
   if (!reader.ReadHeader()) return Damaged(name, reader);
-  const Status taken = CheckHeader(reader, max_side, name);
-  if (!taken.ok()) return taken.error();
+  const Status size_taken = CheckSize(reader, max_side, name);
+  if (!size_taken.ok()) return size_taken.error();
+  const Status kind_taken = CheckKind(reader, name);
+  if (!kind_taken.ok()) return kind_taken.error();
   Pixels pixels{static_cast<int>(reader.width()),
                 static_cast<int>(reader.height()),
                 reader.color_type() == PNG_COLOR_TYPE_GRAY ? PixelOrder::kGrey
@@ -220,19 +270,42 @@ Result<Pixels> DecodePng(std::string_view png, int max_side,
                 {}};
   const std::size_t row_bytes = RowBytes(pixels.width, pixels.order);
   const std::size_t size = row_bytes * static_cast<std::size_t>(pixels.height);
-  // Deflate makes at most 1,032 bytes of one (zlib's technical notes).
-  constexpr std::size_t kMostOfAByte = 1032;
-  if (size / kMostOfAByte > png.size()) {
-    return Error{ErrorCode::kInvalid,
-                 name + ": the PNG is truncated; copy the file again"};
-  }
+  const Status whole = CheckLength(size, png, name);
+  if (!whole.ok()) return whole.error();
   pixels.bytes.resize(size);
-  std::vector<png_bytep> rows;
-  for (std::size_t at = 0; at < size; at += row_bytes) {
-    rows.push_back(pixels.bytes.data() + at);
+  if (!reader.ReadPixels(RowsOf(pixels.bytes, row_bytes).data())) {
+    return Damaged(name, reader);
   }
-  if (!reader.ReadPixels(rows.data())) return Damaged(name, reader);
   return pixels;
+}
+
+Result<PngForm> ReadPngRows(std::string_view png, int max_side,
+                            const std::string& name, const TakePngRow& take) {
+  Reader reader(png);
+  if (!reader.ReadHeader()) return Damaged(name, reader);
+  const Status size_taken = CheckSize(reader, max_side, name);
+  if (!size_taken.ok()) return size_taken.error();
+  const auto height = static_cast<std::size_t>(reader.height());
+  const Status whole = CheckLength(reader.row_bytes() * height, png, name);
+  if (!whole.ok()) return whole.error();
+  if (!reader.Expand()) return Damaged(name, reader);
+  const PngForm form{static_cast<int>(reader.width()),
+                     static_cast<int>(reader.height()), reader.channels(),
+                     reader.bit_depth()};
+  if (!reader.interlaced()) {
+    std::vector<std::uint8_t> row(reader.row_bytes());
+    if (!reader.ReadRows(form, row.data(), take)) return Damaged(name, reader);
+    return form;
+  }
+  std::vector<std::uint8_t> bytes(reader.row_bytes() * height);
+  std::vector<png_bytep> rows = RowsOf(bytes, reader.row_bytes());
+  if (!reader.ReadPixels(rows.data())) {
+    return Damaged(name, reader);
+  }
+  for (int y = 0; y < form.height; ++y) {
+    take(form, y, rows[static_cast<std::size_t>(y)]);
+  }
+  return form;
 }
 
 std::string EncodePng(const PixelView& pixels, PngEffort effort) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,28 @@ bool IsPng(std::string_view bytes);
 /// kind, more than `max_side` pixels a side.
 Result<Pixels> DecodePng(std::string_view png, int max_side,
                          const std::string& name);
+
+/// What the rows of a PNG hold: the file's own samples, a palette replaced by
+/// its colours, a transparent colour by an alpha channel, and grey of less than
+/// 8 bits spread over 0 to 255.
+struct PngForm {
+  int width = 0;
+  int height = 0;
+  int channels = 1;  ///< 1 grey; 2 grey, alpha; 3 RGB; 4 RGB, alpha.
+  int bits = 8;      ///< Of a sample: 8, or 16 with the high byte first.
+
+  bool has_alpha() const { return channels % 2 == 0; }
+};
+
+/// Takes row `y` of a PNG. The bytes are there only during the call.
+using TakePngRow =
+    std::function<void(const PngForm& form, int y, const std::uint8_t* row)>;
+
+/// Reads a PNG of any kind row by row from the top, whatever gamma or colour
+/// profile it claims. Interlaced ones take the memory of all their pixels.
+/// Errors: as DecodePng, but no kind is refused; rows may have been taken.
+Result<PngForm> ReadPngRows(std::string_view png, int max_side,
+                            const std::string& name, const TakePngRow& take);
 
 enum class PngEffort {
   kFast,   ///< For maps that are read again.

@@ -29,7 +29,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       // Names of files that exist are none of an input's business.
       if (text.find('/') != std::string_view::npos) return 0;
       terra::fuzz::RequireReason(terra::ParseRosMap(text, "/nowhere/map.yaml",
-                                                    /*own_legend=*/true));
+                                                    /*own_legend=*/true, {}));
   }
   return 0;
 }

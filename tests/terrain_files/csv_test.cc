@@ -36,6 +36,40 @@ TEST(Csv, LineEndsByteOrderMarkAndEmptyLinesDoNotMatter) {
   EXPECT_THAT(table->rows[1].fields, ElementsAre("3", ""));
 }
 
+TEST(Csv, BlanksAroundFieldsDoNotCount) {
+  const auto table = ParseCsv("id, name ,\tcost\n 1 , a b ,\" 2, 3 \" \n", "t");
+  ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+  EXPECT_THAT(table->header, ElementsAre("id", "name", "cost"));
+  EXPECT_THAT(table->rows[0].fields, ElementsAre("1", "a b", " 2, 3 "));
+}
+
+TEST(Csv, CommentLinesArePassedOver) {
+  const std::string text =
+      "# costs, by \"me\nid,name\n  # one, two, three\n1,a\n#2,b\n3,#c\n"
+      "\"#4\",d\n# the end";
+  const auto table = ParseCsv(text, "t");
+  ASSERT_TRUE(table.ok()) << ErrorMessage(table);
+  EXPECT_THAT(table->header, ElementsAre("id", "name"));
+  ASSERT_EQ(table->rows.size(), 3U);
+  EXPECT_EQ(table->rows[0].line, 4);
+  EXPECT_THAT(table->rows[1].fields, ElementsAre("3", "#c"));
+  EXPECT_THAT(table->rows[2].fields, ElementsAre("#4", "d"));
+}
+
+TEST(Csv, AHeaderThatCannotBeReadSaysWhatToDo) {
+  const testing::TempFolder folder;
+  const auto complaint = [&](const std::string& text) {
+    return ErrorMessage(ReadCsv(folder.Write("t.csv", text), {"id", "cost"}));
+  };
+  EXPECT_THAT(complaint("id;cost\n1;2,5\n"),
+              HasSubstr("t.csv:1: the fields are separated by semicolons"));
+  EXPECT_THAT(complaint("# c\nid\tcost\n1\t2\n"),
+              HasSubstr("t.csv:2: the fields are separated by tabs"));
+  EXPECT_THAT(complaint(std::string("\xFF\xFEi\0d\0", 6)), HasSubstr("UTF-16"));
+  EXPECT_EQ(complaint("ID,Cost\n1,2\n"), "");
+  EXPECT_THAT(complaint("ID,Id,Cost\n1,1,2\n"), HasSubstr("no column 'id'"));
+}
+
 TEST(Csv, AQuotedLineBreakKeepsTheLineNumbersRight) {
   const auto table = ParseCsv("a\n\"1\n2\"\n3\n", "t");
   ASSERT_TRUE(table.ok()) << ErrorMessage(table);
@@ -89,7 +123,8 @@ TEST(Csv, RowByRowALongTableIsTheSame) {
                                  "\n\",x"[random.Int(0, 3)])});
   }
   const testing::TempFolder folder;
-  for (const char* end : {"last,1", "last,1\n", "last,\"1", "last\n"}) {
+  for (const char* end :
+       {"last,1", "last,1\n", "last,\"1", "last\n", "# \"no\nlast,1", "#"}) {
     const std::string path = folder.Write("r.csv", text + end);
     const auto table = ParseCsv(text + end, path);
     std::vector<std::string> rows = RowsOf(path);
@@ -121,12 +156,12 @@ TEST(Csv, RowByRowFaultsAreNamed) {
 
 TEST(Csv, WhatIsWrittenIsReadBack) {
   testing::Random random(7);
-  const std::string alphabet = "ab,\"\n\r ;";
+  const std::string alphabet = "ab,\"\n\r ;#\t";
   for (int round = 0; round < 200; ++round) {
     std::vector<std::string> fields(3);
     for (std::string& field : fields) {
       for (int i = random.Int(1, 6); i > 0; --i) {
-        field += alphabet[static_cast<std::size_t>(random.Int(0, 7))];
+        field += alphabet[static_cast<std::size_t>(random.Int(0, 9))];
       }
     }
     const auto table = ParseCsv("x,y,z\n" + CsvLine(fields), "t");
@@ -141,16 +176,20 @@ TEST(Csv, NumbersKeepEveryBitAndInfinity) {
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(FormatNumber(kInfinity), "inf");
-  EXPECT_EQ(ParseNumber("inf").value(), kInfinity);
+  for (const char* text : {"inf", "Inf", "INF", "+inf", "Infinity"}) {
+    EXPECT_EQ(ParseNumber(text).value(), kInfinity) << text;
+  }
 }
 
 TEST(Csv, WhatIsNoNumberIsRefused) {
-  for (const char* text : {"", "x", "1x", " 1", "nan", "1e999", "-"}) {
+  for (const char* text : {"", "x", "1x", " 1", "nan", "1e999", "-", "-inf",
+                           "1.5 m", "1,5", "infinite"}) {
     EXPECT_FALSE(ParseNumber(text).ok()) << text;
   }
   for (const char* text : {"", "1.5", "99999999999", "0x1", "+1"}) {
     EXPECT_FALSE(ParseInteger(text).ok()) << text;
   }
+  EXPECT_THAT(ErrorMessage(ParseNumber("1,5")), HasSubstr("a point: 1.5"));
 }
 
 }  // namespace

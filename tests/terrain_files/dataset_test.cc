@@ -87,10 +87,12 @@ TEST(Dataset, AMissingCaseTableAndAWrongJsonAreNamed) {
   EXPECT_THAT(ErrorMessage(ReadDataset(folder.Path(""))),
               HasSubstr("cases.csv: there is no such file"));
   folder.Write("cases.csv", kHeader);
-  for (const char* json : {"{", "[]", R"({"name": 3})"}) {
+  for (const char* json :
+       {"{", "[]", "{\"name\": \"\xE4\"}", R"({"name": 3})"}) {
     folder.Write("dataset.json", json);
-    EXPECT_THAT(ErrorMessage(ReadDataset(folder.Path(""))),
-                HasSubstr("dataset.json: "));
+    const std::string message = ErrorMessage(ReadDataset(folder.Path("")));
+    EXPECT_THAT(message, HasSubstr("dataset.json: "));
+    EXPECT_EQ(message.find("json.exception"), std::string::npos) << message;
   }
 }
 

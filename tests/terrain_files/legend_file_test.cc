@@ -60,6 +60,10 @@ INSTANTIATE_TEST_SUITE_P(
                       WrongRow{"-1,a,2,#000000", "ids are 0 to 255"},
                       WrongRow{"1,a,2,#000000", "two rows"},
                       WrongRow{"2,a,,#000000", "'' is not a number"},
+                      WrongRow{"2,a,\"1,5\",#000000", "a point: 1.5"},
+                      WrongRow{"2,a,1,5,#000000", "a number has a point"},
+                      WrongRow{"2,a,5 m,#000000", "not a number"},
+                      WrongRow{"2,a,-inf,#000000", "not a number"},
                       WrongRow{"2,a,0,#000000", "neither inf nor within"},
                       WrongRow{"2,a,-1,#000000", "neither inf nor within"},
                       WrongRow{"2,a,nan,#000000", "not a number"},
@@ -69,6 +73,19 @@ INSTANTIATE_TEST_SUITE_P(
                       WrongRow{"2,a,2,#00FF0G", "not a colour"},
                       WrongRow{"2,,2,#000000", "a name is 1 to 31 bytes"},
                       WrongRow{"2,a,2", "3 fields"}));
+
+TEST(LegendFile, WhatIsUnambiguousIsTaken) {
+  const TempFolder folder;
+  const auto legend =
+      ReadLegend(folder.Write("l.csv",
+                              "# of our field\nid, name, Cost, color\n"
+                              "1, grass, 2, #00ff00\n#2, sand, 3, #FFFF00\n"
+                              "3, rock, Inf, #000000\n"));
+  ASSERT_TRUE(legend.ok()) << ErrorMessage(legend);
+  ASSERT_EQ(legend->terrains().size(), 2U);
+  EXPECT_EQ(legend->terrains()[0].name, "grass");
+  EXPECT_EQ(legend->terrains()[1].cost, kImpassable);
+}
 
 TEST(LegendFile, ALegendWithoutRowsIsRefused) {
   const TempFolder folder;

@@ -43,6 +43,10 @@ INSTANTIATE_TEST_SUITE_P(
     Maps, WrongMovingAiMap,
     ::testing::Values(
         WrongMap{"type octile\nheight 2\nwidth 2\n", "before the line"},
+        WrongMap{"type hex\nheight 1\nwidth 1\nmap\n.\n",
+                 "m.map:1: only maps of type octile"},
+        WrongMap{"type octile\nheight 2\nheight 3\n", "m.map:3: this size"},
+        WrongMap{"type octile\nheight 2 m\n", "m.map:2: not a size"},
         WrongMap{"type octile\nheight 2\nmap\n..\n..\n", "m.map:3: "},
         WrongMap{"type octile\nheight 0\n", "m.map:2: not a size"},
         WrongMap{"type octile\nheight x\n", "m.map:2: not a size"},

@@ -218,6 +218,35 @@ INSTANTIATE_TEST_SUITE_P(
         OccupancyCounts{"smoothers_world.yaml", 300, 300, 79424, 10576},
         OccupancyCounts{"tb3_sandbox.yaml", 384, 384, 7903, 870}));
 
+// Counted by another program (numpy, from PIL's pixels).
+struct OccupancyFile {
+  const char* name;
+  int occupied;
+  int free;
+  int unknown;
+};
+
+class OccupancyFiles : public SharedData,
+                       public ::testing::WithParamInterface<OccupancyFile> {};
+
+TEST_P(OccupancyFiles, HaveTheCellsThatAnotherProgramCounts) {
+  const auto file = ReadMap(DataPath("geo/occupancy/") + GetParam().name);
+  ASSERT_TRUE(file.ok()) << ErrorMessage(file);
+  const ByteRaster& ids = file->map.ids();
+  EXPECT_EQ((ids == kOccupancyOccupied).count(), GetParam().occupied);
+  EXPECT_EQ((ids == kOccupancyFree).count(), GetParam().free);
+  EXPECT_EQ((ids == kOccupancyUnknown).count(), GetParam().unknown);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, OccupancyFiles,
+    ::testing::Values(OccupancyFile{"basement_fixed.map.yaml", 14374, 275742,
+                                    1399884},
+                      OccupancyFile{"depot.yaml", 5947, 179481, 0},
+                      OccupancyFile{"depot_keepout.yaml", 31213, 154215, 0},
+                      OccupancyFile{"nav2_test/testmap.yaml", 29, 71, 0},
+                      OccupancyFile{"ros1_test/testmap2.yaml", 56, 88, 0}));
+
 TEST_F(SharedData, AGradedNav2MapNeedsALegend) {
   const auto file = ReadMap(DataPath("other/nav2/depot_speed.yaml"));
   EXPECT_NE(ErrorMessage(file).find("--legend"), std::string::npos);

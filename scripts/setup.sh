@@ -117,8 +117,9 @@ build() {
   shift
   # Where nothing can be written, what an earlier build left would be run.
   { mkdir -p "$root/build" && (: >>"$log"); } 2>/dev/null ||
-    fail "cannot write to $log, so nothing can be built here.
-Copy the checkout to a folder where you may write, and start it there."
+    fail "cannot write to $log, so nothing can be built here: the checkout is
+read-only, or somebody else (root?) built in it. Copy it without its build folder
+to where you may write, and start it there."
   say "building ($preset)"
   (cd "$root" && cmake --preset "$preset" "${cmake_options[@]}" &&
     cmake --build --preset "$preset" --target "$@") >"$log" 2>&1 || {
@@ -132,6 +133,8 @@ cmake_options=()
 # ensure_multicast: LCM needs a route for its multicast group. Adds one on the
 # loopback interface when there is none and that is allowed.
 ensure_multicast() {
+  # Without the tool to look, the programs say it when they start.
+  command -v ip >/dev/null || return 0
   if ip route get 239.255.76.67 >/dev/null 2>&1; then
     return
   fi

@@ -58,7 +58,7 @@ class Machine:
     def run(self, *command, **environment):
         return subprocess.run(
             [str(word) for word in command], stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120,
             cwd=self.checkout, env={"PATH": str(self.programs), **environment})
 
     def script(self, name, *options, **environment):
@@ -177,6 +177,11 @@ class Multicast(MachineTest):
         self.assertIn("\n  ip route add 224.0.0.0/4 dev lo\n", told)
         self.assertIn("unshare -rn", told)
         self.assertNotIn("went on", done.stdout)
+
+    def test_without_the_tool_nothing_is_claimed(self):
+        (self.machine.programs / "ip").unlink()
+        self.assertEqual(self.machine.setup("ensure_multicast; echo went on").stdout,
+                         "went on\n")
 
     def test_with_root_both_are_run(self):
         self.machine.with_sudo()

@@ -38,9 +38,9 @@ missing_packages() {
   local package
   for package in $(awk -v group="$1" '$1 == group { print $2 }' \
     "$root/scripts/packages"); do
-    if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
-      echo "$package"
-    fi
+    # (A line for each architecture that it is known for.)
+    dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null |
+      grep -x installed >/dev/null || echo "$package"
   done
 }
 
@@ -63,7 +63,8 @@ configures() {
 install_packages() {
   local group missing
   for group in "$@"; do
-    mapfile -t missing < <(missing_packages "$group")
+    # shellcheck disable=SC2207  # Names of packages are words.
+    missing=($(missing_packages "$group"))
     if [ ${#missing[@]} -eq 0 ]; then
       continue
     elif [ "$TERRA_NO_INSTALL" = yes ]; then

@@ -115,6 +115,15 @@ class Packages(MachineTest):
         self.assertEqual(self.install().stdout, "went on\n")
         self.assertEqual(self.machine.calls("cmake"), [])
 
+    def test_one_that_is_there_for_two_architectures_is_there(self):
+        self.machine.stand_in("dpkg-query", "echo installed; echo installed")
+        self.assertEqual(self.install().stdout, "went on\n")
+        self.assertEqual(self.machine.calls("cmake"), [])
+        self.machine.stand_in("dpkg-query", "echo config-files")
+        self.machine.stand_in("cmake", "exit 1")
+        self.assertEqual(self.install("--no-install").returncode, 0)
+        self.assertEqual(len(self.machine.calls("cmake")), 0)
+
     def test_an_lcm_of_ones_own_is_enough_where_the_build_configures(self):
         self.machine.without_packages("liblcm*")
         done = self.install()

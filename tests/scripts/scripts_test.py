@@ -44,7 +44,7 @@ class Machine:
 
     def stand_in(self, name, body):
         path = self.programs / name
-        path.write_text(f'#!/bin/sh\necho "{name} $*" >>"{self.calls_file}"\n{body}\n')
+        path.write_text(f"""#!/bin/sh\nprintf '%s\\n' "{name} $*" >>"{self.calls_file}"\n{body}\n""")
         path.chmod(0o755)
 
     def with_sudo(self):

@@ -165,9 +165,10 @@ std::string GapPlot(const std::vector<LoadedRun>& runs) {
     const bool easy = subset == Subset::kEasy;
     const std::string color =
         easy ? "var(--accent,#1f4fe0)" : "var(--accent2,#c2410c)";
+    const std::string group(SubsetName(subset));
     std::map<int, double> gaps;
     for (const LoadedRun& run : runs) {
-      const Metrics& m = MetricsOf(run, std::string(SubsetName(subset)));
+      const Metrics& m = MetricsOf(run, group);
       if (m.mean_gap) gaps[run.description.stride] = 100 * m.mean_gap->value;
     }
     std::vector<std::pair<double, double>> points;
@@ -182,8 +183,7 @@ std::string GapPlot(const std::vector<LoadedRun>& runs) {
               "fill:none;stroke:" + color + ";stroke-width:2");
     }
     svg.Dot(kLeft + 24, kTop + (easy ? 14 : 34), "fill:" + color);
-    svg.Text(kLeft + 36, kTop + (easy ? 18 : 38), "start",
-             std::string(SubsetName(subset)));
+    svg.Text(kLeft + 36, kTop + (easy ? 18 : 38), "start", group);
   }
   return svg.Finish();
 }

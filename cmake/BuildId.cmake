@@ -1,4 +1,4 @@
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.18...3.25)
 # Writes bus/build_id.h's function: version, git commit, and "dirty" when the
 # tree differs from it. Run at build time:
 # cmake -DSOURCE=... -DVERSION=... -DOUTPUT=file.cc -P BuildId.cmake

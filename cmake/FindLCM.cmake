@@ -3,7 +3,9 @@
 find_path(LCM_INCLUDE_DIR lcm/lcm.h)
 find_library(LCM_LIBRARY lcm)
 find_program(LCM_GEN lcm-gen)
-find_file(LCM_JAR lcm.jar PATHS /usr/share/java /usr/local/share/java)
+get_filename_component(lcm_programs "${LCM_GEN}" DIRECTORY)
+find_file(LCM_JAR lcm.jar HINTS "${lcm_programs}/../share/java"
+          PATHS /usr/share/java /usr/local/share/java)
 mark_as_advanced(LCM_INCLUDE_DIR LCM_LIBRARY LCM_GEN LCM_JAR)
 
 include(FindPackageHandleStandardArgs)

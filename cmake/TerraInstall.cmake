@@ -15,6 +15,7 @@ foreach(folder IN ITEMS terrain verifier)
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/terra_advisor/${folder}")
 endforeach()
 
+get_filename_component(LCM_PREFIX "${LCM_INCLUDE_DIR}" DIRECTORY)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/TerraAdvisorConfig.cmake.in"
   "${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")
@@ -26,7 +27,8 @@ install(FILES "${CMAKE_CURRENT_BINARY_DIR}/TerraAdvisorConfig.cmake"
               "${PROJECT_SOURCE_DIR}/cmake/TerraFindLibrary.cmake"
         DESTINATION "${package_dir}")
 
-# The executables of the running set, and the target that builds just them.
+# The executables of the running set, and the target that builds them with all
+# else that is installed: after it, `cmake --install` works.
 set(executables)
 foreach(name IN ITEMS terra terra-map terra-planner terra-graph-planner
                       terra-advisor terra-verifier terra-logger terra-llm-sim
@@ -36,6 +38,11 @@ foreach(name IN ITEMS terra terra-map terra-planner terra-graph-planner
   endif()
 endforeach()
 add_custom_target(terra_stack)
+add_dependencies(terra_stack terra_msg_headers terra_msg_python terra_terrain
+                 terra_verifier)
+if(TERRA_BUILD_JAVA)
+  add_dependencies(terra_stack terra_msg_jar)
+endif()
 if(executables)
   add_dependencies(terra_stack ${executables})
   install(TARGETS ${executables})

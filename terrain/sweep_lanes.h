@@ -60,7 +60,12 @@ bool AnyBelow(Lanes a, Lanes b) {
 // kLanes lanes of two vectors side by side, from lane kFrom on.
 template <int kFrom, int... kLane>
 Lanes Window(Lanes west, Lanes east, std::integer_sequence<int, kLane...>) {
+#if defined(__clang__)
   return __builtin_shufflevector(west, east, (kFrom + kLane)...);
+#else
+  // g++ 11 has only this one; g++ makes the same instructions of both.
+  return __builtin_shuffle(west, east, Lanes{(kFrom + kLane)...});
+#endif
 }
 
 using AllLanes = std::make_integer_sequence<int, kLanes>;

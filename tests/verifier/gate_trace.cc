@@ -247,11 +247,8 @@ class Player {
     if (said != nullptr && now_.map != nullptr && !now_.cancelled() &&
         said->request_id != 0 && said->request_id == now_.deployed.request_id &&
         said->map_id == now_.map_id) {
-      now_.baseline.reset();
-      if (said->has_route) {
-        now_.baseline = *said;
-        digests_.push_back(said->baseline_digest);
-      }
+      now_.baseline = said->has_route ? std::optional(*said) : std::nullopt;
+      if (said->has_route) digests_.push_back(said->baseline_digest);
     }
     if (now_.baseline) CheckBaseline();
     ObserveRobot(turn);

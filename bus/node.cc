@@ -7,7 +7,11 @@ void Node::Receive(const RawMessage& message, Time now) {
       handlers_[static_cast<std::size_t>(message.channel)];
   if (!handler) return;
   ++received_;
-  if (!handler(message.bytes, now)) ++malformed_;
+  const Status handled = handler(message.bytes, now);
+  if (handled) return;
+  ++malformed_;
+  malformed_error_ =
+      std::string(BaseName(message.channel)) + ": " + handled.error().message;
 }
 
 void Node::AddCounters(Counters& counters) const {

@@ -63,7 +63,7 @@ PlannerNode::PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out)
 void PlannerNode::OnDeployed(const terra_msg::deployed_t& message,
                              bus::Time now) {
   if (!gate_.Accept(message.session, message.seq)) return;
-  bus::RequestInForce carried;
+  RequestInForce carried;
   carried.request_id = message.request_id;
   carried.cancelled = message.cause == terra_msg::deployed_t::CAUSE_CANCELLED;
   carried.start = Cell{message.start_x, message.start_y};
@@ -89,7 +89,7 @@ void PlannerNode::OnRequestChanged(bus::Time now) {
 }
 
 void PlannerNode::Plan(bus::Time now) {
-  const bus::RequestInForce& request = requests_.current();
+  const RequestInForce& request = requests_.current();
   if (!request.any() || (!map_.map() && now < no_map_at_)) return;
   FillBaseline(request);
   if (request.cancelled) {
@@ -113,7 +113,7 @@ void PlannerNode::Plan(bus::Time now) {
   repeat_.Postpone(now);
 }
 
-void PlannerNode::FillBaseline(const bus::RequestInForce& request) {
+void PlannerNode::FillBaseline(const RequestInForce& request) {
   baseline_ = baseline_t{};
   baseline_.request_id = request.request_id;
   baseline_.start_x = request.start.x;
@@ -151,6 +151,10 @@ std::string PlannerNode::state() const {
   if (!map_.map()) return map_.state();
   if (!requests_.current().any()) return "ready, no request yet";
   return "ready";
+}
+
+std::string PlannerNode::last_error() const {
+  return map_.last_error().empty() ? Node::last_error() : map_.last_error();
 }
 
 void PlannerNode::AddCounters(bus::Counters& counters) const {

@@ -73,16 +73,6 @@ class AdviceRateLimiter {
   std::map<SenderAddress, std::size_t> of_sender_;  // Rows in last_second_.
 };
 
-/// Where a udpm:// URL points to.
-struct UdpmUrl {
-  std::uint32_t group = 0;  ///< Host order.
-  std::uint16_t port = 0;
-  int recv_buf_size = 0;  ///< Bytes; 0 = not named.
-};
-
-/// Errors: not udpm://, no multicast address, no port, a number out of range.
-Result<UdpmUrl> ParseUdpmUrl(std::string_view url);
-
 /// The bounded receiver of the advice bus, for gate and logger.
 ///
 /// liblcm 1.3.1 can be made to crash by one packet, and its queues keep the

@@ -8,10 +8,12 @@ void Node::Receive(const RawMessage& message, Time now) {
   if (!handler) return;
   ++received_;
   const Status handled = handler(message.bytes, now);
-  if (handled) return;
+  if (!handled) CountMalformed(message.channel, handled.error().message);
+}
+
+void Node::CountMalformed(Channel channel, const std::string& why) {
   ++malformed_;
-  malformed_error_ =
-      std::string(BaseName(message.channel)) + ": " + handled.error().message;
+  malformed_error_ = std::string(BaseName(channel)) + ": " + why;
 }
 
 void Node::AddCounters(Counters& counters) const {

@@ -56,6 +56,9 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
+  /// Counts a message that decodes and makes no sense, and says why.
+  void CountMalformed(Channel channel, const std::string& why);
+
   /// Calls `handle(message, now)` for each well-formed message of type T.
   template <typename T, typename Handler>
   void Listen(Handler handle) {

@@ -1,5 +1,7 @@
 #include "bus/request_tracker.h"
 
+#include <string>
+
 namespace terra::bus {
 namespace {
 
@@ -10,12 +12,16 @@ bool IsNew(RequestRule::Change change) {
 
 }  // namespace
 
-std::optional<RequestInForce> RequestOf(
-    const terra_msg::plan_request_t& message) {
+Result<RequestInForce> RequestOf(const terra_msg::plan_request_t& message) {
   const bool cancel =
       message.action == terra_msg::plan_request_t::ACTION_CANCEL;
   if (!cancel && message.action != terra_msg::plan_request_t::ACTION_GO) {
-    return std::nullopt;
+    return Error{ErrorCode::kInvalid, "action " +
+                                          std::to_string(message.action) +
+                                          " is neither go (1) nor cancel (2)"};
+  }
+  if (message.request_id == 0) {
+    return Error{ErrorCode::kInvalid, "request_id 0 names no request"};
   }
   return RequestInForce{message.request_id, cancel, message.map_id,
                         Cell{message.start_x, message.start_y},
@@ -23,7 +29,7 @@ std::optional<RequestInForce> RequestOf(
 }
 
 bool RequestTracker::OnRequest(const terra_msg::plan_request_t& message) {
-  const std::optional<RequestInForce> asked = RequestOf(message);
+  const Result<RequestInForce> asked = RequestOf(message);
   return asked && IsNew(rule_.OnRequest(*asked));
 }
 

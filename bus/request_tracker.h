@@ -1,17 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "bus/messages.h"
 #include "terrain/request_in_force.h"
+#include "terrain/result.h"
 
 namespace terra::bus {
 
-/// What a PLAN_REQUEST asks for, `cancelled` for a cancel; nothing where its
-/// action is none that is known.
-std::optional<RequestInForce> RequestOf(
-    const terra_msg::plan_request_t& message);
+/// What a PLAN_REQUEST asks for, `cancelled` for a cancel.
+/// Errors: no request_id, or an action that is none.
+Result<RequestInForce> RequestOf(const terra_msg::plan_request_t& message);
 
 /// Keeps the request in force over restarts of whoever sent it: RequestRule,
 /// for messages.

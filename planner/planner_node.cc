@@ -53,6 +53,9 @@ PlannerNode::PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out)
     if (map_.OnTiles(message, now)) Plan(now);
   });
   Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
+    if (const auto asked = bus::RequestOf(message); !asked) {
+      CountMalformed(bus::Channel::kPlanRequest, asked.error().message);
+    }
     if (requests_.OnRequest(message)) OnRequestChanged(now);
   });
   Listen<terra_msg::deployed_t>([this](const auto& message, bus::Time now) {

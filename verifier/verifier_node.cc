@@ -31,7 +31,11 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
     if (map_.OnTiles(message, now)) OnMap(now);
   });
   Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
-    if (bus::RequestOf(message)) Decide(ToEvent(message), now);
+    if (const auto asked = bus::RequestOf(message); !asked) {
+      CountMalformed(bus::Channel::kPlanRequest, asked.error().message);
+    } else {
+      Decide(ToEvent(message), now);
+    }
   });
   Listen<baseline_t>([this](const auto& message, bus::Time now) {
     OnBaseline(message, now);

@@ -197,6 +197,12 @@ TEST_F(VerifierNodeTest, ARequestWithoutAKnownActionIsNone) {
     Hear(RequestOf(1, static_cast<std::int8_t>(action)));
   }
   EXPECT_TRUE(deployed_.empty());
+  EXPECT_EQ(Counter("malformed"), 4);
+  EXPECT_EQ(node_.last_error(),
+            "TERRA_PLAN_REQUEST: action 127 is neither go (1) nor cancel (2)");
+  Hear(RequestOf(0, plan_request_t::ACTION_GO));
+  EXPECT_EQ(node_.last_error(),
+            "TERRA_PLAN_REQUEST: request_id 0 names no request");
 }
 
 TEST_F(VerifierNodeTest, CancelWithdrawsTheRoute) {

@@ -91,6 +91,12 @@ int Greets(const sockaddr_in& hub) {
   return error;
 }
 
+// How long liblcm waits in the middle of a message.
+void SetPatience(int fd, int option, int milliseconds) {
+  const timeval patience = {0, 1'000 * milliseconds};
+  setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
+}
+
 bool EndsNow(int fd) {
   char byte = 0;
   const ssize_t got = recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
@@ -258,9 +264,8 @@ void LcmLink::Connect() {
     Drop();
     return;
   }
-  const timeval patience = {0, 1'000 * kSendPatienceMs};
-  setsockopt(lcm_get_fileno(out_), SOL_SOCKET, SO_SNDTIMEO, &patience,
-             sizeof patience);
+  SetPatience(lcm_get_fileno(out_), SO_SNDTIMEO, kSendPatienceMs);
+  SetPatience(lcm_get_fileno(in_), SO_RCVTIMEO, kAnswerMs);
   for (const Subscription& each : subscriptions_) SubscribeTo(each);
   Add(epoll_fd_, lcm_get_fileno(in_));
   Add(epoll_fd_, lcm_get_fileno(out_));
@@ -272,7 +277,7 @@ void LcmLink::Connect() {
 void LcmLink::Drop() {
   if (!away_) {
     LogWarning("the hub at " + url_.text() +
-               " went away: nothing is sent or heard until it is back; it is "
+               " went away: nothing is sent or heard until it returns; it is "
                "looked for twice a second");
   }
   away_ = true;

@@ -512,8 +512,12 @@ TEST(Audit, AdviceThatTheRecorderTurnedAwayIsNoFinding) {
 }
 
 TEST(Audit, MissingAdviceIsAFindingWhereTheRecorderTurnedAwayNothing) {
-  const Messages messages = WithoutAttempt(EventfulRun(), 1);
-  ASSERT_GT(VerdictsOn(messages, 1).first, 0);
+  const Messages run = EventfulRun();
+  const auto verdicts = Said<verdict_t>(run);
+  const auto judged = std::ranges::find(
+      verdicts, std::int8_t{verdict_t::SUBJECT_ADVICE}, &verdict_t::subject);
+  ASSERT_NE(judged, verdicts.end());
+  const Messages messages = WithoutAttempt(run, judged->attempt);
   for (const bus::RawMessage& heartbeat :
        {Heartbeat(kRecorder, 0), Heartbeat(kRecorder, -7),
         Heartbeat(kRecorder + 1, 7)}) {

@@ -62,7 +62,12 @@ void RequestNode::OnBaseline(const baseline_t& message, bus::Time now) {
       message.request_id != plan_.request_id) {
     return;
   }
-  if (!baseline_ms_) baseline_ms_ = MillisecondsSinceStart(now);
+  const bool is_first_route =
+      message.status == baseline_t::STATUS_OK &&
+      (!baseline_ || baseline_->status != baseline_t::STATUS_OK);
+  if (!baseline_ms_ || is_first_route) {
+    baseline_ms_ = MillisecondsSinceStart(now);
+  }
   if (!baseline_ || baseline_->status != message.status ||
       baseline_->map_id != message.map_id) {
     baseline_since_ = now;

@@ -119,6 +119,7 @@ TEST_P(RequestOnAnOlderMapTest, WaitsForTheMapInForce) {
   Baseline(GetParam(), kOldMap);
   EXPECT_FALSE(EndsWithin(seconds(9)));
   Baseline(baseline_t::STATUS_OK, kNewMap);
+  EXPECT_EQ(node_->baseline_ms(), 9'000) << "of the route, not of the refusal";
   Deployed(deployed_t::MODE_BASELINE, kNewMap);
   Deployed(deployed_t::MODE_CANDIDATE, kNewMap);
   EXPECT_TRUE(node_->done());

@@ -169,7 +169,7 @@ void Bus::Receive() {
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
     if (waited[1].revents != 0) return;
-    if (waited[0].revents != 0) link_->Handle();
+    if (waited[0].revents != 0 && !link_->Handle()) waited[0].fd = -1;
   }
 }
 

@@ -191,12 +191,14 @@ bool LcmLink::Publish(const std::string& channel,
   return false;
 }
 
-void LcmLink::Handle() {
+bool LcmLink::Handle() {
   if (url_.is_tcpq()) {
     HandleTcpq();
-  } else {
-    lcm_handle(in_);
+    return true;
   }
+  const bool at_end = lcm_handle(in_) != 0 && url_.provider == "file";
+  if (at_end) LogInfo(url_.text() + " was played to its end");
+  return !at_end;
 }
 
 // The messages of in_ are handled outside the lock: nobody else reads there,

@@ -52,8 +52,10 @@ class LcmLink {
   /// Readable when there is something for Handle. The same for the life of the
   /// link, once there is a subscription or the bus is a tcpq:// one.
   int fd() const;
-  /// Takes one message, or sees to a hub that went away or came back.
-  void Handle();
+  /// Takes one message, or sees to a hub that went away or came back. Returns
+  /// false when nothing will come any more, which is said: a file:// bus was
+  /// played to its end. (Its descriptor stays readable for ever.)
+  bool Handle();
 
  private:
   struct Subscription {

@@ -132,9 +132,9 @@ void BusTap::Listen() {
 
 // Hears what is under way in buffers and liblcm's own thread, until the bus was
 // silent for so long. One that never falls silent is not waited for.
-void BusTap::HearDeployedBus(pollfd lcm, int silence_ms) {
+void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
   for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0; ++i) {
-    link_->Handle();
+    if (!link_->Handle()) lcm.fd = -1;
   }
 }
 

@@ -55,7 +55,7 @@ class BusTap {
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
                         void* tap) noexcept;
   void Listen();
-  void HearDeployedBus(pollfd lcm, int silence_ms);
+  void HearDeployedBus(pollfd& lcm, int silence_ms);
   void DrainAdvice();
 
   EventQueue& queue_;

@@ -1,4 +1,5 @@
-// A tcpq:// bus whose hub goes away and comes back.
+// Buses that end: a tcpq:// bus whose hub goes away and comes back, a log that
+// is played to its end.
 #include <poll.h>
 #include <unistd.h>
 
@@ -23,6 +24,7 @@
 #include "bus/time.h"
 #include "tests/bus/sample_messages.h"
 #include "tests/support/tcpq_hub.h"
+#include "tests/support/temp_folder.h"
 
 namespace terra::bus {
 namespace {
@@ -227,6 +229,27 @@ TEST_F(TcpqTest, AHubThatReadsNothingHoldsNobodyUp) {
   }
   EXPECT_TRUE(refused);
   EXPECT_LT(longest, seconds(1));
+}
+
+// liblcm leaves the descriptor of a log that is at its end readable for ever.
+TEST_F(TcpqTest, ALogThatWasPlayedToItsEndCostsNothing) {
+  const terra::testing::TempFolder folder;
+  const std::string url = "file://" + folder.Path("a.log");
+  {
+    const auto writes = OpenBus(url + "?mode=w");
+    auto pose = testing::Sample<terra_msg::pose_t>();
+    ASSERT_TRUE(Outbox(*writes, 7).Send(pose));
+  }
+  CapturedErrors errors;
+  hears_ = OpenBus(url + "?speed=0");
+  ASSERT_TRUE(hears_->Listen(kChannels, inbox_).ok());
+  pollfd fd{inbox_.fd(), POLLIN, 0};
+  EXPECT_EQ(poll(&fd, 1, 5'000), 1);
+  EXPECT_TRUE(inbox_.Pop().has_value());
+  const double before = ProcessorSeconds();
+  poll(nullptr, 0, 500);
+  EXPECT_LT(ProcessorSeconds() - before, 0.1);
+  EXPECT_EQ(TimesIn(errors.Text(), "was played to its end"), 1);
 }
 
 TEST(LcmLinkTest, ATcpqUrlThatIsNoneIsRefused) {

@@ -160,7 +160,8 @@ void AdvisorNode::StartFrom(const Anchor& anchor, bus::Time now) {
   const bus::MapPtr& map = map_.map();
   Route route = anchor.index == 0 ? bus::WaypointsOf(baseline_)
                                   : anchors_.RouteFrom(anchor);
-  if (route.size() < 2) return;
+  // The gate says what is wrong with a route that is none or too long.
+  if (route.size() < 2 || route.size() > bus::kMaxWaypoints) return;
   const double cost = WalkRoute(map->map, route, bus::kMaxSteps).cost;
   if (cost == kImpassable) return;  // the gate will say why
   work_ = Work::kRunning;
@@ -228,7 +229,8 @@ std::string AdvisorNode::state() const {
 }
 
 std::string AdvisorNode::last_error() const {
-  return last_error_.empty() ? map_.last_error() : last_error_;
+  if (!last_error_.empty()) return last_error_;
+  return map_.last_error().empty() ? Node::last_error() : map_.last_error();
 }
 
 void AdvisorNode::AddCounters(bus::Counters& counters) const {

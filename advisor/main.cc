@@ -32,17 +32,19 @@ int main(int argc, char** argv) {
     if (const std::string notice = (*backend)->notice(); !notice.empty()) {
       terra::bus::LogWarning(notice);
     }
-    auto opened =
-        terra::bus::Bus::Open(context.bus.advice_url, context.channels);
-    if (!opened) return opened.error();
-    advice_bus = *std::move(opened);
-    advice_out = std::make_unique<terra::bus::Outbox>(*advice_bus,
-                                                      context.out.session());
+    if (!context.bus.OneBus()) {
+      auto opened =
+          terra::bus::Bus::Open(context.bus.advice_url, context.channels);
+      if (!opened) return opened.error();
+      advice_bus = *std::move(opened);
+      advice_out = std::make_unique<terra::bus::Outbox>(*advice_bus,
+                                                        context.out.session());
+    }
+    terra::bus::Outbox& advice = advice_out ? *advice_out : context.out;
     terra::bus::Inbox& inbox = context.inbox;
     return std::unique_ptr<terra::bus::Node>(
         std::make_unique<terra::advisor::AdvisorNode>(
-            context.name, *std::move(backend), context.out, *advice_out,
-            [&inbox] {
+            context.name, *std::move(backend), context.out, advice, [&inbox] {
               inbox.Wake();
             }));
   };

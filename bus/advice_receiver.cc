@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <utility>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+
+#include "bus/lcm_url.h"
 
 namespace terra::bus {
 namespace {
@@ -28,17 +29,6 @@ std::uint32_t BigEndian32(const std::uint8_t* at) {
          (std::uint32_t{at[2]} << 8) | at[3];
 }
 
-std::optional<int> ParseNumber(std::string_view text, int low, int high) {
-  int value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < low ||
-      value > high) {
-    return std::nullopt;
-  }
-  return value;
-}
-
 Error SystemError(const std::string& what, const std::string& url) {
   return Error{ErrorCode::kUnavailable,
                what + " for " + url + ": " + std::strerror(errno)};
@@ -46,7 +36,7 @@ Error SystemError(const std::string& what, const std::string& url) {
 
 // Binds and joins as LCM does (SO_REUSEADDR, any interface), but to the group's
 // address: LCM 1.3.1 binds to all addresses and hears other groups too.
-Status Listen(int fd, const UdpmUrl& to, const std::string& url) {
+Status Listen(int fd, const LcmUrl& to, const std::string& url) {
   const int yes = 1;
   if (setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) != 0) {
     return SystemError("cannot share the port", url);
@@ -59,8 +49,8 @@ Status Listen(int fd, const UdpmUrl& to, const std::string& url) {
 
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(to.group);
-  address.sin_port = htons(to.port);
+  address.sin_addr.s_addr = htonl(to.address);
+  address.sin_port = htons(static_cast<std::uint16_t>(to.port));
   if (bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) !=
       0) {
     const std::string port = std::to_string(to.port);
@@ -71,7 +61,7 @@ Status Listen(int fd, const UdpmUrl& to, const std::string& url) {
                        url);
   }
   ip_mreq membership{};
-  membership.imr_multiaddr.s_addr = htonl(to.group);
+  membership.imr_multiaddr.s_addr = htonl(to.address);
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   if (setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership,
                  sizeof(membership)) != 0) {
@@ -131,54 +121,16 @@ bool AdviceRateLimiter::Admit(SenderAddress sender, std::int64_t now_us) {
   return true;
 }
 
-Result<UdpmUrl> ParseUdpmUrl(std::string_view url) {
-  const Error error{ErrorCode::kInvalid,
-                    "not a URL of the form udpm://GROUP:PORT?options with a "
-                    "multicast group: " +
-                        std::string(url)};
-  constexpr std::string_view kScheme = "udpm://";
-  if (!url.starts_with(kScheme)) {
-    return error;
-  }
-  const std::string_view rest = url.substr(kScheme.size());
-  const std::string_view network = rest.substr(0, rest.find('?'));
-  const std::size_t colon = network.find(':');
-  in_addr group{};
-  if (colon == std::string_view::npos ||
-      inet_pton(AF_INET, std::string(network.substr(0, colon)).c_str(),
-                &group) != 1) {
-    return error;
-  }
-  UdpmUrl result;
-  result.group = ntohl(group.s_addr);
-  const auto port = ParseNumber(network.substr(colon + 1), 1, 65535);
-  if (!port || (result.group >> 28) != 0xe) {
-    return error;
-  }
-  result.port = static_cast<std::uint16_t>(*port);
-  constexpr std::string_view kBuffer = "recv_buf_size=";
-  std::string_view options =
-      network.size() == rest.size() ? "" : rest.substr(network.size() + 1);
-  while (!options.empty()) {
-    const std::string_view option = options.substr(0, options.find('&'));
-    options.remove_prefix(std::min(options.size(), option.size() + 1));
-    if (option.starts_with(kBuffer)) {
-      const auto size = ParseNumber(option.substr(kBuffer.size()), 1, 1 << 30);
-      if (!size) {
-        return error;
-      }
-      result.recv_buf_size = *size;
-    }
-  }
-  return result;
-}
-
 Result<AdviceReceiver> AdviceReceiver::Open(const std::string& url,
                                             std::string channel,
                                             AdviceRateLimiter::Limits limits) {
-  const Result<UdpmUrl> to = ParseUdpmUrl(url);
+  const Result<LcmUrl> to = ParseLcmUrl(url);
   if (!to) {
     return to.error();
+  }
+  if (!to->is_udpm()) {
+    return Error{ErrorCode::kInvalid,
+                 "advice is read from udpm:// buses only, not from " + url};
   }
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) {

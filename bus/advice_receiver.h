@@ -73,24 +73,14 @@ class AdviceRateLimiter {
   std::map<SenderAddress, std::size_t> of_sender_;  // Rows in last_second_.
 };
 
-/// Where a udpm:// URL points to.
-struct UdpmUrl {
-  std::uint32_t group = 0;  ///< Host order.
-  std::uint16_t port = 0;
-  int recv_buf_size = 0;  ///< Bytes; 0 = not named.
-};
-
-/// Errors: not udpm://, no multicast address, no port, a number out of range.
-Result<UdpmUrl> ParseUdpmUrl(std::string_view url);
-
 /// The bounded receiver of the advice bus, for gate and logger.
 ///
-/// liblcm 1.3.1 can be made to crash by one packet, and its queues keep the
-/// oldest messages of a flood. So the advice bus is read from a socket of its
-/// own: everything is read (so that the socket's buffer does not fill with a
-/// flood), only whole messages of one channel are taken, and of those no more
-/// than the limiter admits. The rest is counted. No byte that arrives can do
-/// more than that.
+/// liblcm (1.3.1 to 1.5.2) can be made to crash by one packet, and its queues
+/// keep the oldest messages of a flood. So the advice bus is read from a socket
+/// of its own: everything is read (so that the socket's buffer does not fill
+/// with a flood), only whole messages of one channel are taken, and of those no
+/// more than the limiter admits. The rest is counted. No byte that arrives can
+/// do more than that.
 ///
 /// Threads: one thread owns it. It has no thread of its own; wait for fd().
 class AdviceReceiver {

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include <arpa/inet.h>
 #include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sys/eventfd.h>
@@ -27,7 +26,7 @@ sockaddr_in GroupAddress(const LcmUrl& url) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(url.port));
-  inet_pton(AF_INET, url.group.c_str(), &address.sin_addr);
+  address.sin_addr.s_addr = htonl(url.address);
   return address;
 }
 
@@ -86,16 +85,22 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
 
 Result<std::unique_ptr<Bus>> Bus::Open(const std::string& url,
                                        ChannelNames names) {
-  const Result<LcmUrl> parsed = ParseLcmUrl(url);
-  if (!parsed) return parsed.error();
   if (const Status room = RoomForLcm(); !room) return room.error();
-  lcm_t* lcm = lcm_create(url.c_str());
-  if (lcm == nullptr) return WhyUnusable(url, "LCM refuses it");
-  return std::unique_ptr<Bus>(new Bus(url, std::move(names), lcm));
+  Result<std::unique_ptr<LcmLink>> link = LcmLink::Open(url);
+  if (!link) return link.error();
+  std::unique_ptr<Bus> bus(new Bus(*std::move(link), std::move(names)));
+  if (bus->link_->url().is_tcpq()) {
+    // Whether the hub is there is seen by whoever waits for what it sends.
+    const Status started = bus->StartReceiving();
+    if (!started) return started.error();
+  }
+  return bus;
 }
 
-Bus::Bus(std::string url, ChannelNames names, lcm_t* lcm)
-    : url_(std::move(url)), names_(std::move(names)), lcm_(lcm) {}
+Bus::Bus(std::unique_ptr<LcmLink> link, ChannelNames names)
+    : link_(std::move(link)),
+      url_(link_->url().text()),
+      names_(std::move(names)) {}
 
 Bus::~Bus() {
   if (receiver_.joinable()) {
@@ -104,7 +109,6 @@ Bus::~Bus() {
     receiver_.join();
   }
   if (stop_fd_ >= 0) close(stop_fd_);
-  lcm_destroy(lcm_);
 }
 
 Status Bus::Listen(std::span<const Channel> channels, Inbox& inbox) {
@@ -113,16 +117,15 @@ Status Bus::Listen(std::span<const Channel> channels, Inbox& inbox) {
   for (const Channel channel : channels) {
     subscriptions_.push_back(
         std::make_unique<Subscription>(Subscription{this, channel}));
-    lcm_subscription_t* subscribed =
-        lcm_subscribe(lcm_, names_.name(channel).c_str(), &Bus::OnMessage,
-                      subscriptions_.back().get());
-    // The first subscription opens the receiving socket and sends itself a
-    // test message; where that fails there is no descriptor to wait on.
-    if (subscribed == nullptr || lcm_get_fileno(lcm_) < 0) {
-      return WhyUnusable(url_, "what is sent does not come back (a firewall?)");
-    }
-    lcm_subscription_set_queue_capacity(subscribed, kLcmQueueCapacity);
+    const Status subscribed =
+        link_->Subscribe(names_.name(channel), &Bus::OnMessage,
+                         subscriptions_.back().get(), kLcmQueueCapacity);
+    if (!subscribed) return subscribed.error();
   }
+  return receiver_.joinable() ? Status(Done{}) : StartReceiving();
+}
+
+Status Bus::StartReceiving() {
   stop_fd_ = eventfd(0, EFD_CLOEXEC);
   if (stop_fd_ < 0) {
     return Error{ErrorCode::kUnavailable,
@@ -136,8 +139,7 @@ Status Bus::Listen(std::span<const Channel> channels, Inbox& inbox) {
 
 bool Bus::Publish(Channel channel, std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kMaxMessageBytes ||
-      lcm_publish(lcm_, names_.name(channel).c_str(), bytes.data(),
-                  static_cast<unsigned>(bytes.size())) != 0) {
+      !link_->Publish(names_.name(channel), bytes)) {
     ++counters_.send_failed;
     return false;
   }
@@ -158,16 +160,16 @@ void Bus::OnMessage(const lcm_recv_buf_t* buffer, const char*,
                               buffer->data_size});
 }
 
-// THREADING: the one thread that handles this LCM object. It waits for liblcm's
-// own read thread (which empties the socket) and for the stop event, and only
+// THREADING: the one thread that handles this link. It waits for liblcm's own
+// read thread (which empties the socket) and for the stop event, and only
 // copies messages into the inbox, so it never falls behind.
 void Bus::Receive() {
-  std::array<pollfd, 2> waited = {pollfd{lcm_get_fileno(lcm_), POLLIN, 0},
+  std::array<pollfd, 2> waited = {pollfd{link_->fd(), POLLIN, 0},
                                   pollfd{stop_fd_, POLLIN, 0}};
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
     if (waited[1].revents != 0) return;
-    if (waited[0].revents != 0) lcm_handle(lcm_);
+    if (waited[0].revents != 0 && !link_->Handle()) waited[0].fd = -1;
   }
 }
 

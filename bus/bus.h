@@ -10,11 +10,9 @@
 
 #include "bus/channels.h"
 #include "bus/inbox.h"
+#include "bus/lcm_link.h"
 #include "bus/transport.h"
 #include "terrain/result.h"
-
-struct _lcm_t;
-struct _lcm_recv_buf_t;
 
 namespace terra::bus {
 
@@ -29,7 +27,7 @@ Error WhyUnusable(const std::string& url, const std::string& otherwise);
 /// Errors: a bus that cannot work at all (no multicast route, busy port,
 ///         firewall) is an Error that says what to do. A route that is lost
 ///         later is not: publishes fail, are counted, and work again when it
-///         comes back.
+///         comes back. So is no tcpq:// hub that is away (see LcmLink).
 /// Threads: Publish from any thread; the rest from the thread that made it.
 class Bus : public Transport {
  public:
@@ -63,14 +61,15 @@ class Bus : public Transport {
     Channel channel;
   };
 
-  Bus(std::string url, ChannelNames names, _lcm_t* lcm);
+  Bus(std::unique_ptr<LcmLink> link, ChannelNames names);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
                         void* subscription) noexcept;
+  Status StartReceiving();
   void Receive();
 
+  std::unique_ptr<LcmLink> link_;
   std::string url_;
   ChannelNames names_;
-  _lcm_t* lcm_;
   Counters counters_;
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   Inbox* inbox_ = nullptr;

@@ -16,9 +16,12 @@
 #include "bus/wire.h"
 
 /// The channel and layout of every message type, field by field as in
-/// lcmtypes/; tests/bus/golden holds one encoded message of each. Names are
-/// bounded (kMaxNameBytes): the gate repeats an advisor's and a planner's, and
-/// what it says has to fit a message whatever they call themselves.
+/// lcmtypes/; tests/bus/golden holds one encoded message of each.
+///
+/// What the gate says is bounded here: names (kMaxNameBytes), waypoints, steps.
+/// What others say to the gate, BASELINE and ADVICE, is bounded by its bytes
+/// alone: where it is more than the gate takes, the gate says so in a VERDICT,
+/// which it could not do for a message that does not decode.
 namespace terra::bus {
 
 // Declares the traits of one type.
@@ -34,14 +37,14 @@ TERRA_MESSAGE(map_header_t, kMapHeader,
 TERRA_MESSAGE(map_tile_t, kMapTile, "lll N1024 i*l*i* N20000 b*")
 TERRA_MESSAGE(map_request_t, kMapRequest, "lll l N4096 i*")
 TERRA_MESSAGE(plan_request_t, kPlanRequest, "lll l b l iiii")
-TERRA_MESSAGE(baseline_t, kBaseline, "lll l iiii l s63 b l N2048 i*i* d lll")
+TERRA_MESSAGE(baseline_t, kBaseline, "lll l iiii l s b l N i*i* d lll")
 TERRA_MESSAGE(advice_t, kAdvice,
-              "lll lll ll iii s63s63s63s63 l i l bbb N2048 i*i* ss ll d ll s")
+              "lll lll ll iii ssss l i l bbb N i*i* ss ll d ll s")
 TERRA_MESSAGE(verdict_t, kVerdict, "lll l b lll ll iii s63 ll i h ddd l iii l")
 TERRA_MESSAGE(deployed_t, kDeployed,
               "lll ll l iiii ll bb s63 ll i N2048 i*i* i N40000 b* dd")
 TERRA_MESSAGE(pose_t, kPose, "lll ii dd ll")
-TERRA_MESSAGE(status_t, kStatus, "lll ss i ss N64 s*l* s")
+TERRA_MESSAGE(status_t, kStatus, "lll ss i ss N s*l* s")
 TERRA_MESSAGE(config_t, kConfig, "lll sss")
 TERRA_MESSAGE(log_mark_t, kLog, "lll b ii lll l s")
 

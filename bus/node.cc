@@ -7,7 +7,13 @@ void Node::Receive(const RawMessage& message, Time now) {
       handlers_[static_cast<std::size_t>(message.channel)];
   if (!handler) return;
   ++received_;
-  if (!handler(message.bytes, now)) ++malformed_;
+  const Status handled = handler(message.bytes, now);
+  if (!handled) CountMalformed(message.channel, handled.error().message);
+}
+
+void Node::CountMalformed(Channel channel, const std::string& why) {
+  ++malformed_;
+  malformed_error_ = std::string(BaseName(channel)) + ": " + why;
 }
 
 void Node::AddCounters(Counters& counters) const {

@@ -30,7 +30,8 @@ class Node {
   /// The channels to subscribe.
   const std::vector<Channel>& channels() const { return channels_; }
 
-  /// Decodes a message and hands it to its handler. Malformed ones are counted.
+  /// Decodes a message and hands it to its handler. Malformed ones are counted,
+  /// and last_error says of the newest what was wrong with it.
   void Receive(const RawMessage& message, Time now);
 
   /// Does what is due, and returns when the next thing will be. Called after
@@ -39,7 +40,9 @@ class Node {
 
   /// For the heartbeat: "ready", "waiting for map", ...
   virtual std::string state() const = 0;
-  virtual std::string last_error() const { return {}; }
+  /// What is wrong; empty = nothing. A node with errors of its own says this
+  /// one, of a message that it could not decode, where it has none.
+  virtual std::string last_error() const { return malformed_error_; }
   virtual void AddCounters(Counters& counters) const;
 
   /// True when the process should end by itself.
@@ -53,6 +56,9 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
+  /// Counts a message that decodes and makes no sense, and says why.
+  void CountMalformed(Channel channel, const std::string& why);
+
   /// Calls `handle(message, now)` for each well-formed message of type T.
   template <typename T, typename Handler>
   void Listen(Handler handle) {
@@ -62,18 +68,20 @@ class Node {
     handlers_[static_cast<std::size_t>(kChannel)] =
         [handle](std::span<const std::uint8_t> bytes, Time now) {
           const Result<T> message = Decode<T>(bytes);
-          if (message) handle(*message, now);
-          return message.ok();
+          if (!message) return Status(message.error());
+          handle(*message, now);
+          return Status(Done{});
         };
   }
 
  private:
-  using RawHandler = std::function<bool(std::span<const std::uint8_t>, Time)>;
+  using RawHandler = std::function<Status(std::span<const std::uint8_t>, Time)>;
 
   std::vector<Channel> channels_;
   std::array<RawHandler, kNumChannels> handlers_;
   std::int64_t received_ = 0;
   std::int64_t malformed_ = 0;
+  std::string malformed_error_;
 };
 
 }  // namespace terra::bus

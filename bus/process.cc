@@ -34,6 +34,9 @@ int Serve(const ProcessSpec& spec, const std::string& name,
     LogError(channels.error().message);
     return kWrongUsage;
   }
+  if (const std::string notice = options.Notice(); !notice.empty()) {
+    LogWarning(notice);
+  }
   Inbox inbox;
   Result<std::unique_ptr<Bus>> opened = Bus::Open(options.lcm_url, *channels);
   if (!opened) return Fail(opened.error().message);
@@ -117,11 +120,40 @@ Status BusOptions::Complete() {
     if (!derived) return derived.error();
     advice_url = *std::move(derived);
   }
-  for (const std::string& url : {lcm_url, advice_url}) {
-    const Result<LcmUrl> parsed = ParseLcmUrl(url);
-    if (!parsed) return parsed.error();
+  const Result<LcmUrl> deployed = ParseLcmUrl(lcm_url);
+  if (!deployed) return deployed.error();
+  const Result<LcmUrl> advice = ParseLcmUrl(advice_url);
+  if (!advice) return advice.error();
+  lcm_url = deployed->text();
+  advice_url = advice->text();
+  if (!advice->is_udpm() && !OneBus()) {
+    return Error{ErrorCode::kInvalid,
+                 "--advice-url " + advice_url +
+                     ": only a udpm:// bus can be apart from the deployed bus; "
+                     "leave --advice-url out, and advice travels on " +
+                     lcm_url};
   }
   return Done{};
+}
+
+bool BusOptions::OneBus() const {
+  const Result<LcmUrl> deployed = ParseLcmUrl(lcm_url);
+  const Result<LcmUrl> advice = ParseLcmUrl(advice_url);
+  return deployed && advice && SameBus(*deployed, *advice);
+}
+
+std::string BusOptions::Notice() const {
+  if (lcm_url.starts_with("memq://")) {
+    return lcm_url +
+           " stays within this process: no other process is heard or hears it. "
+           "For a set of processes use udpm:// or tcpq://";
+  }
+  if (lcm_url.starts_with("file://")) {
+    return lcm_url +
+           " is a log file: no other process is heard or hears this one. For a "
+           "set of processes use udpm:// or tcpq://";
+  }
+  return {};
 }
 
 Result<ChannelNames> BusOptions::Channels() const {

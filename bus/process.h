@@ -22,8 +22,13 @@ struct BusOptions {
   std::string robot;
   std::string map_prefix;
 
-  /// Fills in what was left empty. Errors: a bad URL.
+  /// Fills in what was left empty, and URLs in full. Errors: a bad URL; an
+  /// advice bus apart from the deployed one that is not udpm.
   Status Complete();
+  /// Does advice travel on the deployed bus? Pre: Complete.
+  bool OneBus() const;
+  /// What whoever starts a program should know about its bus, or nothing.
+  std::string Notice() const;
   Result<ChannelNames> Channels() const;
 };
 

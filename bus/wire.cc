@@ -51,10 +51,12 @@ class Walker {
   std::size_t at_ = 0;
 };
 
+constexpr std::int32_t kNoLimit = std::numeric_limits<std::int32_t>::max();
+
 // One field of a layout.
 struct Field {
   char kind = ' ';
-  std::int32_t limit = std::numeric_limits<std::int32_t>::max();
+  std::int32_t limit = kNoLimit;
   bool repeated = false;
 };
 
@@ -112,9 +114,13 @@ Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
       if (walker.left() < 4) return Malformed("truncated");
       const auto value = static_cast<std::int32_t>(
           static_cast<std::uint32_t>(walker.Unsigned(4)));
-      if (value < 0 || value > field.limit) {
+      // Whatever is counted takes a byte at least.
+      const auto most = field.limit == kNoLimit
+                            ? static_cast<std::int64_t>(walker.left())
+                            : field.limit;
+      if (value < 0 || value > most) {
         return Malformed("count " + std::to_string(value) + ", at most " +
-                         std::to_string(field.limit));
+                         std::to_string(most));
       }
       count = static_cast<std::size_t>(value);
     } else if (!SkipField(walker, field, field.repeated ? count : 1)) {

@@ -162,7 +162,8 @@ std::vector<Datagram> HalfFragments(Attacker& attacker) {
 }
 
 std::vector<Datagram> OffsetWrap(Attacker& attacker) {
-  // A channel that the attacker does not listen to, or it is the first to end.
+  // A channel that the attacker does not listen to: by liblcm 1.3.1 it would be
+  // the first to end. (1.5.2 keeps fragments of any channel, so there it is.)
   const std::string& name = attacker.channel(bus::Channel::kAdvice);
   FragmentHeader header;
   header.sequence = attacker.NextSequence();

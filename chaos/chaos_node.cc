@@ -41,7 +41,8 @@ ChaosNode::ChaosNode(ChaosOptions options, Attacker attacker, bus::Outbox& out,
   });
   Listen<baseline_t>([this](const baseline_t& message, bus::Time) {
     if (message.status != baseline_t::STATUS_OK ||
-        message.waypoint_x.size() < 2) {
+        message.waypoint_x.size() < 2 ||
+        message.waypoint_x.size() > bus::kMaxWaypoints) {
       return;
     }
     OverhearDeployed(message);

@@ -9,13 +9,17 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "bus/advice_receiver.h"
+#include "bus/lcm_url.h"
 
 namespace terra::chaos {
 
 Result<DatagramSocket> DatagramSocket::Open(const std::string& url) {
-  const Result<bus::UdpmUrl> to = bus::ParseUdpmUrl(url);
+  const Result<bus::LcmUrl> to = bus::ParseLcmUrl(url);
   if (!to) return to.error();
+  if (!to->is_udpm()) {
+    return Error{ErrorCode::kInvalid,
+                 "datagrams are sent to udpm:// buses only, not to " + url};
+  }
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const unsigned char ttl = 0;
   if (fd < 0 ||
@@ -26,7 +30,7 @@ Result<DatagramSocket> DatagramSocket::Open(const std::string& url) {
     if (fd >= 0) close(fd);
     return error;
   }
-  return DatagramSocket(fd, to->group, to->port);
+  return DatagramSocket(fd, to->address, static_cast<std::uint16_t>(to->port));
 }
 
 DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept

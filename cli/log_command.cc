@@ -68,6 +68,13 @@ struct AuditArguments {
   bool json = false;
 };
 
+std::string Conclusion(const logger::Audit& audit) {
+  if (!audit.clean()) return std::to_string(audit.num_findings) + " findings";
+  if (audit.unrecorded == 0) return "clean";
+  return "clean, but for " + std::to_string(audit.unrecorded) +
+         " verdicts not made again";
+}
+
 void PrintAudit(const logger::Audit& audit) {
   std::cout << audit.verdicts << " verdicts and " << audit.deployed
             << " deployments made again, the same; " << audit.anchors
@@ -79,6 +86,18 @@ void PrintAudit(const logger::Audit& audit) {
     std::cout << audit.unchecked
               << " verdicts from before the first DEPLOYED not checked\n";
   }
+  if (audit.unrecorded > 0) {
+    std::cout << audit.unrecorded
+              << " verdicts are on advice that this log does not hold, and "
+                 "were not made again.\n"
+                 "  In a flood of advice the gate looks at a part of it, and "
+                 "the recorder at another part;\n"
+                 "  the recorder turned away "
+              << audit.advice_turned_away
+              << " datagrams. This is no fault of the gate, and no route was\n"
+                 "  deployed unseen: each DEPLOYED holds its route, which was "
+                 "checked and priced again.\n";
+  }
   for (const std::string& note : audit.notes) {
     std::cout << "note: " << note << "\n";
   }
@@ -87,9 +106,7 @@ void PrintAudit(const logger::Audit& audit) {
     if (finding.decision != 0) std::cout << ", decision " << finding.decision;
     std::cout << ": " << finding.what << "\n";
   }
-  std::cout << (audit.clean()
-                    ? "clean\n"
-                    : std::to_string(audit.num_findings) + " findings\n");
+  std::cout << Conclusion(audit) << "\n";
 }
 
 void PrintAuditJson(const logger::Audit& audit) {
@@ -100,12 +117,17 @@ void PrintAuditJson(const logger::Audit& audit) {
                         {"decision", finding.decision},
                         {"what", finding.what}});
   }
-  const nlohmann::json all = {
-      {"clean", audit.clean()},     {"sessions", audit.sessions},
-      {"verdicts", audit.verdicts}, {"deployed", audit.deployed},
-      {"anchors", audit.anchors},   {"unchecked", audit.unchecked},
-      {"notes", audit.notes},       {"num_findings", audit.num_findings},
-      {"findings", findings}};
+  const nlohmann::json all = {{"clean", audit.clean()},
+                              {"sessions", audit.sessions},
+                              {"verdicts", audit.verdicts},
+                              {"deployed", audit.deployed},
+                              {"anchors", audit.anchors},
+                              {"unchecked", audit.unchecked},
+                              {"unrecorded", audit.unrecorded},
+                              {"advice_turned_away", audit.advice_turned_away},
+                              {"notes", audit.notes},
+                              {"num_findings", audit.num_findings},
+                              {"findings", findings}};
   std::cout << all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
             << "\n";
 }
@@ -126,7 +148,8 @@ void AddAudit(CLI::App& log, int& exit_code) {
   CLI::App& command = *log.add_subcommand(
       "audit",
       "Make every verdict and deployment again from its inputs and compare; "
-      "exit 1 if anything differs or is missing");
+      "exit 1 if anything differs or is missing. Verdicts on advice that the "
+      "recorder turned away in a flood are counted and are no finding");
   const auto arguments = std::make_shared<AuditArguments>();
   command.add_option("file", arguments->file, "LCM event log")->required();
   command.add_flag("--json", arguments->json, "Print JSON");

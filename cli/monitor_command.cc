@@ -9,6 +9,7 @@
 
 #include "bus/bus.h"
 #include "bus/event_loop.h"
+#include "bus/log.h"
 #include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
@@ -37,6 +38,10 @@ bool Show(const std::string& view) {
 int Watch(MonitorArguments& arguments) {
   const Status completed = arguments.bus.Complete();
   if (!completed) return Fail(completed.error(), kWrongUsage);
+  bus::SetLogName("terra");
+  if (const std::string notice = arguments.bus.Notice(); !notice.empty()) {
+    bus::LogWarning(notice);
+  }
   const bus::StopSignal stop;
   const Result<bus::ChannelNames> channels = arguments.bus.Channels();
   if (!channels) return Fail(channels.error(), kWrongUsage);

@@ -11,6 +11,7 @@
 #include "bus/codec.h"
 #include "bus/event_loop.h"
 #include "bus/map_file_options.h"
+#include "bus/log.h"
 #include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
@@ -81,6 +82,10 @@ int FailRequest(const std::string& message, int exit_code = kCouldNot) {
 int Ask(RequestArguments& arguments) {
   const Status completed = arguments.bus.Complete();
   if (!completed) return FailRequest(completed.error().message, kWrongUsage);
+  bus::SetLogName("terra");
+  if (const std::string notice = arguments.bus.Notice(); !notice.empty()) {
+    bus::LogWarning(notice);
+  }
   RequestPlan plan;
   plan.request_id = bus::RandomId();
   plan.start = arguments.start;
@@ -145,7 +150,9 @@ void AddRequestCommand(CLI::App& app, int& exit_code) {
   AddCostModelOptions(*command, arguments->map.options.cost_model);
   command
       ->add_option("--wait", arguments->wait_s,
-                   "seconds to wait for a refined route (default 10)")
+                   "seconds to wait for a refined route, or for another map "
+                   "where the planner finds no route on the one it has "
+                   "(default 10); a baseline is waited for at least 2 s")
       ->check(bus::InRange(0.0, 86'400.0));
   command->add_flag("--keep", arguments->keep,
                     "go on asking until stopped (Ctrl-C)");

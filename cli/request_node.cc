@@ -10,6 +10,10 @@ using terra_msg::deployed_t;
 
 // A picture wants the map; no set takes longer to send one.
 constexpr bus::Duration kMapPatience = std::chrono::seconds(20);
+// A set that was just started is in service within this time.
+constexpr bus::Duration kBaselinePatience = std::chrono::seconds(2);
+// A map file that was edited is offered within 2 s.
+constexpr bus::Duration kMapEditPatience = std::chrono::milliseconds(2'500);
 // Two heartbeats, of which the second surely follows the answer.
 constexpr bus::Duration kReasonPatience = std::chrono::milliseconds(2'500);
 constexpr std::size_t kMaxKeptVerdicts = 1'000;
@@ -26,7 +30,7 @@ RequestNode::RequestNode(const RequestPlan& plan, bus::Outbox& out)
   request_.goal_x = plan.goal.x;
   request_.goal_y = plan.goal.y;
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
-    map_.OnHeader(message, now);
+    OnHeader(message, now);
   });
   Listen<terra_msg::map_tile_t>([this](const auto& message, bus::Time now) {
     map_.OnTiles(message, now);
@@ -45,12 +49,29 @@ RequestNode::RequestNode(const RequestPlan& plan, bus::Outbox& out)
   });
 }
 
+void RequestNode::OnHeader(const terra_msg::map_header_t& message,
+                           bus::Time now) {
+  if (map_server_.Accept(message.session, message.seq)) {
+    offered_map_id_ = message.map_id;
+  }
+  if (plan_.want_map) map_.OnHeader(message, now);
+}
+
 void RequestNode::OnBaseline(const baseline_t& message, bus::Time now) {
   if (!planner_.Accept(message.session, message.seq) ||
       message.request_id != plan_.request_id) {
     return;
   }
-  if (!baseline_ms_) baseline_ms_ = MillisecondsSinceStart(now);
+  const bool is_first_route =
+      message.status == baseline_t::STATUS_OK &&
+      (!baseline_ || baseline_->status != baseline_t::STATUS_OK);
+  if (!baseline_ms_ || is_first_route) {
+    baseline_ms_ = MillisecondsSinceStart(now);
+  }
+  if (!baseline_ || baseline_->status != message.status ||
+      baseline_->map_id != message.map_id) {
+    baseline_since_ = now;
+  }
   baseline_ = message;
 }
 
@@ -112,8 +133,22 @@ bool RequestNode::Refused(bus::Time now) const {
 // Nothing more is to be waited for.
 bool RequestNode::Settled(bus::Time now) const {
   if (!Answered()) return false;
-  if (baseline_->status != baseline_t::STATUS_OK) return true;
-  return refined_ms_.has_value() || Refused(now) || advisors_.AllGaveUp();
+  if (baseline_->status == baseline_t::STATUS_CANCELLED) return true;
+  if (baseline_->status != baseline_t::STATUS_OK) {
+    return offered_map_id_ != 0 && baseline_->map_id == offered_map_id_ &&
+           now >= baseline_since_ + kMapEditPatience;
+  }
+  const bool on_old_map =
+      offered_map_id_ != 0 && deployed_->map_id != offered_map_id_;
+  return HasRoute() && !on_old_map &&
+         (refined_ms_.has_value() || Refused(now) || advisors_.AllGaveUp());
+}
+
+bool RequestNode::TimeIsUp(bus::Time now) const {
+  const bool has_answer =
+      HasRoute() || (baseline_ && baseline_->status != baseline_t::STATUS_OK);
+  return now >= started_at_ + plan_.wait &&
+         (has_answer || now >= started_at_ + kBaselinePatience);
 }
 
 double RequestNode::MillisecondsSinceStart(bus::Time now) const {
@@ -125,9 +160,8 @@ bus::Time RequestNode::Advance(bus::Time now) {
   if (repeat_.Due(now) && (!Answered() || plan_.keep)) out_.Send(request_);
   const bool map_is_here =
       !plan_.want_map || !HasRoute() || map_.map() != nullptr;
-  const bool time_is_up = now >= started_at_ + plan_.wait;
   const bool map_time_is_up = now >= started_at_ + plan_.wait + kMapPatience;
-  if (!plan_.keep && (Settled(now) || time_is_up) &&
+  if (!plan_.keep && (Settled(now) || TimeIsUp(now)) &&
       (map_is_here || map_time_is_up)) {
     done_ = true;
   }

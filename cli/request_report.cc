@@ -73,6 +73,16 @@ void PrintWhyNone(const RequestNode& node) {
   }
 }
 
+// Says so where a process has another map than the one that is offered.
+std::string OfOtherMap(const std::string& who, std::int64_t map_id,
+                       const RequestNode& node) {
+  const std::int64_t offered = node.offered_map_id();
+  if (offered == map_id) return "";
+  if (offered == 0) return "; no map was heard, is terra-map running?";
+  return "; terra-map offers map " + std::to_string(offered) + ", which " +
+         who + " did not get in time: terra monitor shows its state";
+}
+
 }  // namespace
 
 nlohmann::json RequestJson(const RequestNode& node) {
@@ -162,7 +172,8 @@ std::string WhyNoRoute(const RequestNode& node) {
     return "no planner answered; is terra-planner running on this bus?";
   }
   if (node.baseline()->status != baseline_t::STATUS_OK) {
-    return std::string(BaselineStatus(node.baseline()->status));
+    return std::string(BaselineStatus(node.baseline()->status)) +
+           OfOtherMap("the planner", node.baseline()->map_id, node);
   }
   if (!node.deployed()) {
     return "the gate did not answer; is terra-verifier running on this bus?";
@@ -174,7 +185,8 @@ std::string WhyNoRoute(const RequestNode& node) {
              ToString(Cell{verdict.fail_x, verdict.fail_y});
     }
   }
-  return "nothing was deployed in time";
+  return "nothing was deployed in time" +
+         OfOtherMap("the gate", node.deployed()->map_id, node);
 }
 
 }  // namespace terra::cli

@@ -102,10 +102,7 @@ int RunVerify(const VerifyArguments& arguments) {
   } else {
     PrintText(result);
   }
-  if (result.baseline.feasible()) return kDone;
-  return Fail({ErrorCode::kInvalid,
-               "the baseline is not feasible, so there is nothing to compare "
-               "the candidate with"});
+  return kDone;
 }
 
 }  // namespace
@@ -137,7 +134,8 @@ void AddVerifyCommand(CLI::App& app, int& exit_code) {
   single.needs(single.get_option("--map"));
   dataset.needs(dataset.get_option("--dataset"));
   command.footer(
-      "The exit code is 0 for every verdict, also for a rejected candidate.\n"
+      "The exit code is 0 for every verdict, also for a rejected candidate or "
+      "a baseline\nthat cannot be driven (baseline_invalid).\n"
       "Examples:\n"
       "  terra verify --map park.png --start 2,2 --goal 90,40 \\\n"
       "      --baseline \"[(2, 2), (50, 50), (90, 40)]\" \\\n"

@@ -1,5 +1,6 @@
 #include "logger/audit.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "logger/audit_session.h"
@@ -29,6 +30,9 @@ void Audit::Add(Finding finding) {
 
 namespace {
 
+// A bound, so that sums of any numbers of a log do not overflow.
+constexpr std::int64_t kMostTurnedAway = 1'000'000'000'000;
+
 void AddDamage(const LogReader& reader, const SealChecker& seals,
                Audit& audit) {
   const auto add = [&audit](std::string what) {
@@ -50,6 +54,25 @@ void AddDamage(const LogReader& reader, const SealChecker& seals,
   }
 }
 
+// The recorder tells in its heartbeat, which stands in its own log.
+std::int64_t TurnedAway(const LogContents& contents, const SealChecker& seals) {
+  if (!seals.header()) return 0;
+  std::int64_t most = 0;
+  for (const auto& [index, time_us, status] : contents.statuses) {
+    if (status.session != seals.header()->session) continue;
+    std::int64_t turned_away = 0;
+    for (std::size_t i = 0; i < status.counter_name.size(); ++i) {
+      const std::string& name = status.counter_name[i];
+      if (name == "advice_over_limit" || name == "advice_lost_in_kernel") {
+        turned_away += std::clamp<std::int64_t>(status.counter_value[i], 0,
+                                                kMostTurnedAway);
+      }
+    }
+    most = std::max(most, turned_away);
+  }
+  return most;
+}
+
 }  // namespace
 
 Audit AuditContents(LogContents& contents, const LogReader& reader,
@@ -58,6 +81,7 @@ Audit AuditContents(LogContents& contents, const LogReader& reader,
   AddDamage(reader, seals, audit);
   // Under good seals the log is what was heard.
   const bool as_heard = seals.sealed() && audit.clean();
+  if (as_heard) audit.advice_turned_away = TurnedAway(contents, seals);
   for (const Conflict& conflict : contents.conflicts) {
     if (conflict.of_gate || !as_heard) {
       audit.Add({Finding::Kind::kConflict, 0, 0, conflict.what});

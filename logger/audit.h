@@ -35,7 +35,14 @@ struct Audit {
   std::int64_t deployed = 0;           ///< Made again, and the same.
   std::int64_t anchors = 0;  ///< Deployments taken as the state to go on from:
                              ///< route and costs made again, cause not known.
-  std::int64_t unchecked = 0;     ///< Verdicts from before the first DEPLOYED.
+  std::int64_t unchecked = 0;  ///< Verdicts from before the first DEPLOYED.
+  /// Datagrams of the advice bus that the recorder of a sealed log said it
+  /// turned away. Gate and recorder each look at so many a second, in a flood
+  /// not at the same ones.
+  std::int64_t advice_turned_away = 0;
+  /// Verdicts that could not be made again, since the recorder turned away what
+  /// was judged. No findings; always 0 where it turned away nothing.
+  std::int64_t unrecorded = 0;
   std::vector<Finding> findings;  ///< The first kMaxFindings.
   std::int64_t num_findings = 0;
   /// What other processes than the gate did wrong, if the log's seals show that
@@ -53,7 +60,8 @@ struct Audit {
 /// The order in which the log has them does not matter, since it is not the
 /// order in which the gate heard them: decisions are taken by their number, and
 /// each says what it was made from. Where the log begins in mid-session, or
-/// lacks decisions, the next DEPLOYED is the state to go on from.
+/// lacks decisions, the next DEPLOYED is the state to go on from. A verdict on
+/// advice that the recorder turned away is counted and passed over.
 Audit AuditLog(LogReader& reader);
 
 /// The same for a log that was read to its end.

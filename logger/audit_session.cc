@@ -198,6 +198,9 @@ void SessionAudit::Explain(Decisions::const_iterator at) {
   ReplayedGate& gate = gates_.front();
   if (gate.decided().empty()) {
     const Ways ways = causes_.WaysTo(at->second, gate, route_seq_offset_);
+    if (ways.num_advice != 1 && audit_.advice_turned_away > 0) {
+      return PassOver(at->second);
+    }
     if (!ways.missing.empty()) {
       return Fail(Finding::Kind::kMissingInput, at->first, ways.missing);
     }
@@ -213,6 +216,19 @@ void SessionAudit::Explain(Decisions::const_iterator at) {
   Fail(Finding::Kind::kMismatch, at->first,
        said + ", but from its inputs follows " +
            InWords(MessageOf(front, offset)));
+}
+
+// A verdict on advice that the recorder turned away in a flood and the gate
+// looked at. What is refused changes nothing but the gate's count of decisions;
+// where it was accepted, the DEPLOYED that follows is the state to go on from.
+void SessionAudit::PassOver(const Logged<Decided>& logged) {
+  ++audit_.unrecorded;
+  if (std::get<verdict_t>(logged.message).code == verdict_t::CODE_ACCEPTED) {
+    lost_ = true;
+    gates_.clear();
+  } else if (decision_offset_) {
+    decision_offset_ = Sum(*decision_offset_, 1);
+  }
 }
 
 // The gates from which the logged decision follows.

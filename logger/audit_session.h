@@ -41,6 +41,7 @@ class SessionAudit {
            std::vector<ReplayedGate>& after) const;
   void Go(std::vector<ReplayedGate> gates, std::int64_t decision);
   void Explain(Decisions::const_iterator at);
+  void PassOver(const Logged<Decided>& logged);
   Decided MessageOf(const verifier::Decision& made,
                     std::int64_t decision_offset) const;
   void Fail(Finding::Kind kind, std::int64_t decision, std::string what);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -45,36 +44,33 @@ std::int64_t MonotonicMicroseconds() {
 }  // namespace
 
 std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
-  constexpr std::string_view kOption = "recv_buf_size=";
-  if (!url.starts_with("udpm://")) return url;
-  const std::size_t at = url.find(kOption);
-  if (at == std::string::npos) {
-    return url + (url.find('?') == std::string::npos ? '?' : '&') +
-           std::string(kOption) + std::to_string(bytes);
+  Result<bus::LcmUrl> parsed = bus::ParseLcmUrl(url);
+  if (!parsed || !parsed->is_udpm() || parsed->recv_buf_size >= bytes) {
+    return url;
   }
-  const std::size_t begin = at + kOption.size();
-  const std::size_t end = std::min(url.find('&', begin), url.size());
-  if (std::atoll(url.c_str() + begin) >= bytes) return url;
-  return url.substr(0, begin) + std::to_string(bytes) + url.substr(end);
+  // Of an option that is given twice the last one counts.
+  parsed->options += (parsed->options.empty() ? "" : "&") +
+                     std::string("recv_buf_size=") + std::to_string(bytes);
+  return parsed->text();
 }
 
 Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
                                              const std::string& advice_channel,
                                              EventQueue& queue) {
-  lcm_t* lcm = lcm_create(
-      WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()).c_str());
-  if (lcm == nullptr) return bus::WhyUnusable(urls.deployed, "LCM refuses it");
-  std::unique_ptr<BusTap> tap(new BusTap(queue, lcm, eventfd(0, EFD_CLOEXEC)));
-  if (tap->stop_fd_ < 0)
+  Result<std::unique_ptr<bus::LcmLink>> link = bus::LcmLink::Open(
+      WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()));
+  if (!link) return link.error();
+  std::unique_ptr<BusTap> tap(
+      new BusTap(queue, *std::move(link), eventfd(0, EFD_CLOEXEC)));
+  if (tap->stop_fd_ < 0) {
     return bus::WhyUnusable(urls.deployed, std::strerror(errno));
-  lcm_subscription_t* subscribed =
-      lcm_subscribe(lcm, ".*", &BusTap::OnMessage, tap.get());
-  if (subscribed == nullptr || lcm_get_fileno(lcm) < 0) {
-    return bus::WhyUnusable(urls.deployed,
-                            "what is sent does not come back (a firewall?)");
   }
-  lcm_subscription_set_queue_capacity(subscribed, kLcmQueueCapacity);
-  if (urls.advice != urls.deployed && urls.advice.starts_with("udpm://")) {
+  const Status subscribed = tap->link_->Subscribe(".*", &BusTap::OnMessage,
+                                                  tap.get(), kLcmQueueCapacity);
+  if (!subscribed) return subscribed.error();
+  const Result<bus::LcmUrl> advice = bus::ParseLcmUrl(urls.advice);
+  if (!advice) return advice.error();
+  if (advice->is_udpm() && !bus::SameBus(*advice, tap->link_->url())) {
     auto opened = bus::AdviceReceiver::Open(urls.advice, advice_channel);
     if (!opened) return opened.error();
     tap->advice_.emplace(*std::move(opened));
@@ -85,8 +81,9 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
   return tap;
 }
 
-BusTap::BusTap(EventQueue& queue, _lcm_t* lcm, int stop_fd)
-    : queue_(queue), lcm_(lcm), stop_fd_(stop_fd) {}
+BusTap::BusTap(EventQueue& queue, std::unique_ptr<bus::LcmLink> link,
+               int stop_fd)
+    : queue_(queue), link_(std::move(link)), stop_fd_(stop_fd) {}
 
 BusTap::~BusTap() {
   if (thread_.joinable()) {
@@ -95,7 +92,6 @@ BusTap::~BusTap() {
     thread_.join();
   }
   if (stop_fd_ >= 0) close(stop_fd_);
-  lcm_destroy(lcm_);
 }
 
 void BusTap::OnMessage(const lcm_recv_buf_t* buffer, const char* channel,
@@ -115,13 +111,13 @@ void BusTap::OnMessage(const lcm_recv_buf_t* buffer, const char* channel,
       {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
 }
 
-// THREADING: the one thread that handles this LCM object and the advice socket.
+// THREADING: the one thread that handles this link and the advice socket.
 // It copies messages into the queue, stamped with the time, and never writes.
 // Advice waits a moment in its socket, so that the baseline that it answers,
 // which comes through one more thread, stands before it in the log.
 void BusTap::Listen() {
   std::array<pollfd, 3> waited = {
-      pollfd{stop_fd_, POLLIN, 0}, pollfd{lcm_get_fileno(lcm_), POLLIN, 0},
+      pollfd{stop_fd_, POLLIN, 0}, pollfd{link_->fd(), POLLIN, 0},
       pollfd{advice_ ? advice_->fd() : -1, POLLIN, 0}};
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
@@ -136,9 +132,9 @@ void BusTap::Listen() {
 
 // Hears what is under way in buffers and liblcm's own thread, until the bus was
 // silent for so long. One that never falls silent is not waited for.
-void BusTap::HearDeployedBus(pollfd lcm, int silence_ms) {
+void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
   for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0; ++i) {
-    lcm_handle(lcm_);
+    if (!link_->Handle()) lcm.fd = -1;
   }
 }
 

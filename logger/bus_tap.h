@@ -8,11 +8,11 @@
 #include <thread>
 
 #include "bus/advice_receiver.h"
+#include "bus/lcm_link.h"
 #include "logger/event_queue.h"
 #include "terrain/result.h"
 
 struct pollfd;
-struct _lcm_t;
 struct _lcm_recv_buf_t;
 
 namespace terra::logger {
@@ -51,15 +51,15 @@ class BusTap {
   const Counters& counters() const { return counters_; }
 
  private:
-  BusTap(EventQueue& queue, _lcm_t* lcm, int stop_fd);
+  BusTap(EventQueue& queue, std::unique_ptr<bus::LcmLink> link, int stop_fd);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
                         void* tap) noexcept;
   void Listen();
-  void HearDeployedBus(pollfd lcm, int silence_ms);
+  void HearDeployedBus(pollfd& lcm, int silence_ms);
   void DrainAdvice();
 
   EventQueue& queue_;
-  _lcm_t* lcm_;
+  std::unique_ptr<bus::LcmLink> link_;
   int stop_fd_;
   std::optional<bus::AdviceReceiver> advice_;
   Counters counters_;
@@ -67,7 +67,7 @@ class BusTap {
 };
 
 /// Returns the URL with a recv_buf_size of at least `bytes`; other URLs than
-/// udpm:// as they are.
+/// udpm://, and what is no URL, as they are.
 std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes);
 
 }  // namespace terra::logger

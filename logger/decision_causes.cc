@@ -155,9 +155,11 @@ void DecisionCauses::WaysTo(const verdict_t& verdict, Ways& ways) {
       {verdict.request_id, verdict.map_id, verdict.baseline_digest,
        verdict.advisor_session, verdict.attempt, verdict.candidate});
   if (found == contents_.advice.end()) {
+    ways.num_advice = 0;
     ways.missing = Missing("the ADVICE, attempt", verdict.attempt);
     return;
   }
+  ways.num_advice = found->second.size();
   for (const Logged<terra_msg::advice_t>& said : found->second) {
     verifier::AdviceEvent event = verifier::ToEvent(said.message);
     if (event.anchor.session == session_) {

@@ -17,6 +17,9 @@ namespace terra::logger {
 struct Ways {
   std::vector<GateEvents> all;
   std::string missing;  ///< What the log does not hold for a further way.
+  /// To a verdict on advice: how many messages the log holds under the name of
+  /// what was judged. An honest advisor says one thing under each name.
+  std::size_t num_advice = 1;
 };
 
 /// Finds, in a log, the inputs that the decisions of one session name.

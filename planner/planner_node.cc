@@ -54,6 +54,9 @@ PlannerNode::PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out)
     if (map_.OnTiles(message, now)) Plan(now);
   });
   Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
+    if (const auto asked = bus::RequestOf(message); !asked) {
+      CountMalformed(bus::Channel::kPlanRequest, asked.error().message);
+    }
     if (requests_.OnRequest(message)) OnRequestChanged(now);
   });
   Listen<terra_msg::deployed_t>([this](const auto& message, bus::Time now) {
@@ -64,7 +67,7 @@ PlannerNode::PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out)
 void PlannerNode::OnDeployed(const terra_msg::deployed_t& message,
                              bus::Time now) {
   if (!gate_.Accept(message.session, message.seq)) return;
-  bus::RequestInForce carried;
+  RequestInForce carried;
   carried.request_id = message.request_id;
   carried.cancelled = message.cause == terra_msg::deployed_t::CAUSE_CANCELLED;
   carried.start = Cell{message.start_x, message.start_y};
@@ -95,7 +98,7 @@ void PlannerNode::PlanWith(PlanFunction plan, bus::Time now) {
 }
 
 void PlannerNode::Plan(bus::Time now) {
-  const bus::RequestInForce& request = requests_.current();
+  const RequestInForce& request = requests_.current();
   if (!request.any() || (!map_.map() && now < no_map_at_)) return;
   FillBaseline(request);
   if (request.cancelled) {
@@ -119,7 +122,7 @@ void PlannerNode::Plan(bus::Time now) {
   repeat_.Postpone(now);
 }
 
-void PlannerNode::FillBaseline(const bus::RequestInForce& request) {
+void PlannerNode::FillBaseline(const RequestInForce& request) {
   baseline_ = baseline_t{};
   baseline_.request_id = request.request_id;
   baseline_.start_x = request.start.x;
@@ -157,6 +160,10 @@ std::string PlannerNode::state() const {
   if (!map_.map()) return map_.state();
   if (!requests_.current().any()) return "ready, no request yet";
   return "ready";
+}
+
+std::string PlannerNode::last_error() const {
+  return map_.last_error().empty() ? Node::last_error() : map_.last_error();
 }
 
 void PlannerNode::AddCounters(bus::Counters& counters) const {

@@ -26,7 +26,7 @@ class PlannerNode : public bus::Node {
 
   bus::Time Advance(bus::Time now) override;
   std::string state() const override;
-  std::string last_error() const override { return map_.last_error(); }
+  std::string last_error() const override;
   void AddCounters(bus::Counters& counters) const override;
 
  protected:
@@ -38,7 +38,7 @@ class PlannerNode : public bus::Node {
   void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);
   void OnRequestChanged(bus::Time now);
   void Plan(bus::Time now);
-  void FillBaseline(const bus::RequestInForce& request);
+  void FillBaseline(const RequestInForce& request);
   void FillRoute(const LatticePlan& plan);
 
   std::string name_;

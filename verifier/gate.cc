@@ -11,69 +11,38 @@ namespace terra::verifier {
 
 Decisions Gate::On(const RequestEvent& event) {
   Decisions out;
-  if (event.request_id == 0) return out;
-  if (event.request_id == request_.id) {
-    if (event.cancel && !request_.cancelled) Cancel(out);
-    return out;
-  }
-  if (replaced_requests_.Has(event.request_id)) return out;
-  if (event.cancel) {
-    // Of a request that never came: it must not start later.
-    replaced_requests_.Add(event.request_id);
-    return out;
-  }
-  Replace(Request{event.request_id, false, event.start, event.goal}, out);
+  OnChange(requests_.OnRequest(
+               {event.request_id, event.cancel, 0, event.start, event.goal}),
+           out);
   return out;
 }
 
-void Gate::Replace(const Request& request, Decisions& out) {
-  replaced_requests_.Add(request_.id);
+// The route of another request leads elsewhere; that of a cancelled one,
+// nowhere.
+void Gate::OnChange(RequestRule::Change change, Decisions& out) {
+  if (change != RequestRule::Change::kReplaced &&
+      change != RequestRule::Change::kCancelled) {
+    return;
+  }
   DropBaseline();
-  request_ = request;
-  answered_by_ = 0;
-  // The route of the old request leads elsewhere.
   DeployNothing(Mode::kNone,
-                request.cancelled ? Cause::kCancelled : Cause::kNewRequest,
+                request().cancelled ? Cause::kCancelled : Cause::kNewRequest,
                 out);
-}
-
-void Gate::Cancel(Decisions& out) {
-  request_.cancelled = true;
-  DropBaseline();
-  DeployNothing(Mode::kNone, Cause::kCancelled, out);
-}
-
-// A baseline carries the request on when its sender is gone: it is taken over
-// where there is none, and where its planner knew the current request and went
-// on to another. A planner that never named the current request is only late.
-bool Gate::Adopt(const BaselineEvent& event, Decisions& out) {
-  if (event.request_id == 0) return false;
-  if (event.request_id == request_.id) {
-    answered_by_ = event.session;
-    return true;
-  }
-  const bool moved_on = answered_by_ != 0 && answered_by_ == event.session;
-  if (replaced_requests_.Has(event.request_id) ||
-      (request_.id != 0 && !moved_on)) {
-    return false;
-  }
-  Replace(Request{event.request_id, event.cancelled, event.start, event.goal},
-          out);
-  answered_by_ = event.session;
-  return true;
 }
 
 // ---- Baselines ----
 
 Decisions Gate::On(const BaselineEvent& event) {
   Decisions out;
-  if (!Adopt(event, out)) {
+  const RequestRule::Change change = requests_.OnAnswer(
+      {event.request_id, event.cancelled, 0, event.start, event.goal},
+      event.session);
+  OnChange(change, out);
+  if (change == RequestRule::Change::kOther) {
     ++counters_.other_baselines;
     return out;
   }
-  // The planner heard a cancel that was lost on the way to the gate.
-  if (event.cancelled && !request_.cancelled) Cancel(out);
-  if (request_.cancelled) return out;
+  if (request().cancelled) return out;
   if (map_ == nullptr || event.map_id != map_id_) {
     ++counters_.other_baselines;
     return out;
@@ -110,11 +79,11 @@ RouteCheck Gate::CheckBaseline(const BaselineEvent& event) const {
   RouteCheck check;
   const std::int64_t digest =
       BaselineDigest(event.request_id, event.map_id, event.waypoints);
-  if (digest != event.baseline_digest) {
+  if (digest != event.baseline_digest || event.planner.size() > kMaxNameBytes) {
     check.code = Code::kMalformedMessage;
     return check;
   }
-  return CheckRoute(*map_, event.waypoints, request_.start, request_.goal,
+  return CheckRoute(*map_, event.waypoints, request().start, request().goal,
                     kBusLimits);
 }
 
@@ -147,7 +116,7 @@ void Gate::ReportBaseline(Decisions& out) {
   verdict.request_id = message.request_id;
   verdict.map_id = map_id_;
   verdict.baseline_digest = message.baseline_digest;
-  verdict.anchor.cell = request_.start;
+  verdict.anchor.cell = request().start;
   verdict.advisor = message.planner;
   verdict.advisor_session = message.session;
   verdict.code = baseline_->check.code;
@@ -163,9 +132,9 @@ void Gate::ReportBaseline(Decisions& out) {
 void Gate::Deploy(Deployed next, Decisions& out) {
   next.decision = ++decisions_;
   next.route_seq = deployed_.route_seq + 1;
-  next.request_id = request_.id;
-  next.start = request_.start;
-  next.goal = request_.goal;
+  next.request_id = request().request_id;
+  next.start = request().start;
+  next.goal = request().goal;
   next.map_id = map_id_;
   deployed_ = std::move(next);
   driven_.Follow(deployed_.waypoints);
@@ -215,7 +184,7 @@ Decisions Gate::On(const MapEvent& event) {
 void Gate::RecheckBaseline(Decisions& out) {
   if (!baseline_ || baseline_->check.code == Code::kMalformedMessage) return;
   baseline_->check = CheckRoute(*map_, baseline_->message.waypoints,
-                                request_.start, request_.goal, kBusLimits);
+                                request().start, request().goal, kBusLimits);
   if (!baseline_valid()) {
     ++counters_.invalid_baselines;
     ReportBaseline(out);
@@ -233,7 +202,7 @@ void Gate::RecheckDeployed(Decisions& out) {
   }
   const bool candidate = deployed_.mode == Mode::kCandidate;
   const RouteCheck check = CheckRoute(
-      *map_, deployed_.waypoints, request_.start, request_.goal, kBusLimits);
+      *map_, deployed_.waypoints, request().start, request().goal, kBusLimits);
   if (!baseline_valid()) {
     if (check.feasible()) {
       KeepOnNewMap(check.cost, out);

@@ -6,6 +6,7 @@
 
 #include "terrain/driven_route.h"
 #include "terrain/map.h"
+#include "terrain/request_in_force.h"
 #include "verifier/gate_memory.h"
 #include "verifier/gate_messages.h"
 #include "verifier/verify.h"
@@ -57,13 +58,6 @@ class Gate {
   bool has_map() const { return map_ != nullptr; }
 
  private:
-  struct Request {
-    std::int64_t id = 0;
-    bool cancelled = false;
-    Cell start;
-    Cell goal;
-  };
-
   // The baseline of the current request, with what the gate found about it.
   struct HeldBaseline {
     BaselineEvent message;
@@ -75,9 +69,8 @@ class Gate {
     double cost = kImpassable;
   };
 
-  void Replace(const Request& request, Decisions& out);
-  void Cancel(Decisions& out);
-  bool Adopt(const BaselineEvent& event, Decisions& out);
+  void OnChange(RequestRule::Change change, Decisions& out);
+  const RequestInForce& request() const { return requests_.current(); }
 
   bool Holds(const BaselineEvent& event) const;
   void DropBaseline();
@@ -111,14 +104,11 @@ class Gate {
   GateOptions options_;
   std::shared_ptr<const TerrainMap> map_;
   std::int64_t map_id_ = 0;
-  Request request_;
+  RequestRule requests_;
   std::optional<HeldBaseline> baseline_;
-  // The planner session that last named the current request.
-  std::int64_t answered_by_ = 0;
   Deployed deployed_;
   DrivenRoute driven_;  // follows deployed_
   std::int64_t decisions_ = 0;
-  ReplacedIds replaced_requests_{64};
   ReplacedIds replaced_maps_{64};
   ReplacedIds replaced_baselines_{256};
   // The advice bus lets 200 messages a second through, each repeated once a

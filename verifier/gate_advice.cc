@@ -12,6 +12,10 @@ bool IsAnswer(AdviceKind kind) {
          kind == AdviceKind::kMalformed;
 }
 
+bool IsWellFormed(const AdviceEvent& event) {
+  return IsAnswer(event.kind) && event.advisor.size() <= kMaxNameBytes;
+}
+
 }  // namespace
 
 Decisions Gate::On(const AdviceEvent& event) {
@@ -40,7 +44,7 @@ Decisions Gate::On(const AdviceEvent& event) {
   verdict.advisor_session = event.session;
   verdict.attempt = event.attempt;
   verdict.candidate = event.candidate;
-  verdict.code = IsAnswer(event.kind) ? *key : Code::kMalformedMessage;
+  verdict.code = IsWellFormed(event) ? *key : Code::kMalformedMessage;
   verdict.route_seq_before = deployed_.route_seq;
   std::optional<PricedRoute> accepted;
   if (verdict.code == Code::kNotChecked) accepted = Judge(event, verdict);
@@ -68,12 +72,12 @@ bool Gate::InForce(std::int64_t session, std::int64_t route_seq) const {
 
 // Without a map there is no baseline.
 std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
-  if (event.request_id != request_.id || request_.id == 0) {
-    return replaced_requests_.Has(event.request_id)
+  if (event.request_id != request().request_id || !request().any()) {
+    return requests_.WasReplaced(event.request_id)
                ? std::optional(Code::kStaleRequest)
                : std::nullopt;
   }
-  if (request_.cancelled) return Code::kStaleRequest;
+  if (request().cancelled) return Code::kStaleRequest;
   if (event.map_id != map_id_) {
     return replaced_maps_.Has(event.map_id) ? std::optional(Code::kStaleMap)
                                             : std::nullopt;
@@ -122,7 +126,7 @@ std::optional<Gate::PricedRoute> Gate::JudgeProposal(const AdviceEvent& event,
     return std::nullopt;
   }
   const RouteCheck check =
-      CheckRoute(*map_, event.waypoints, anchor, request_.goal, kBusLimits);
+      CheckRoute(*map_, event.waypoints, anchor, request().goal, kBusLimits);
   verdict.candidate_cost = check.cost;
   if (!check.feasible()) {
     verdict.code = check.code;
@@ -131,8 +135,8 @@ std::optional<Gate::PricedRoute> Gate::JudgeProposal(const AdviceEvent& event,
     return std::nullopt;
   }
   PricedRoute whole{driven_.JoinAt(event.anchor.index, event.waypoints), 0};
-  const RouteCheck joined = CheckRoute(*map_, whole.waypoints, request_.start,
-                                       request_.goal, kBusLimits);
+  const RouteCheck joined = CheckRoute(*map_, whole.waypoints, request().start,
+                                       request().goal, kBusLimits);
   whole.cost = joined.cost;
   if (!joined.feasible()) {
     verdict.code = joined.code;

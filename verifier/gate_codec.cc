@@ -16,6 +16,10 @@ using terra_msg::plan_request_t;
 using terra_msg::pose_t;
 using terra_msg::verdict_t;
 
+static_assert(kMaxNameBytes == bus::kMaxNameBytes);
+static_assert(kBusLimits.max_waypoints == bus::kMaxWaypoints);
+static_assert(kBusLimits.max_steps == bus::kMaxSteps);
+
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 double CostOnBus(double cost) {
@@ -85,7 +89,7 @@ verdict_t ToMessage(const Verdict& verdict, std::int64_t t_det_us) {
   message.anchor_index = verdict.anchor.index;
   message.anchor_x = verdict.anchor.cell.x;
   message.anchor_y = verdict.anchor.cell.y;
-  message.advisor = verdict.advisor;
+  message.advisor = bus::CleanText(verdict.advisor, kMaxNameBytes);
   message.advisor_session = verdict.advisor_session;
   message.attempt = verdict.attempt;
   message.candidate = verdict.candidate;

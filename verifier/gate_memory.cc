@@ -1,18 +1,6 @@
 #include "verifier/gate_memory.h"
 
-#include <algorithm>
-
 namespace terra::verifier {
-
-void ReplacedIds::Add(std::int64_t id) {
-  if (id == 0 || Has(id)) return;
-  ids_.push_back(id);
-  if (ids_.size() > capacity_) ids_.pop_front();
-}
-
-bool ReplacedIds::Has(std::int64_t id) const {
-  return std::find(ids_.begin(), ids_.end(), id) != ids_.end();
-}
 
 bool JudgedAdvice::Add(const AdviceEvent& event) {
   const Key key = {event.request_id, event.map_id,  event.baseline_digest,

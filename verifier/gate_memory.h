@@ -2,27 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <tuple>
 
 #include "verifier/gate_messages.h"
 
 namespace terra::verifier {
-
-/// Ids that were in force once; the oldest is forgotten first.
-class ReplacedIds {
- public:
-  explicit ReplacedIds(std::size_t capacity) : capacity_(capacity) {}
-
-  /// 0 stands for "none" and is not remembered.
-  void Add(std::int64_t id);
-  bool Has(std::int64_t id) const;
-
- private:
-  std::size_t capacity_;
-  std::deque<std::int64_t> ids_;
-};
 
 /// Which advice has had its verdict. What was not repeated for longest is
 /// forgotten first, so that a flood of new advice cannot push out advice that

@@ -14,6 +14,10 @@
 // without time stamps, sender counters and what the gate does not read.
 namespace terra::verifier {
 
+/// The gate repeats names in what it says, which has to fit a message: whoever
+/// has a longer one is refused.
+inline constexpr std::size_t kMaxNameBytes = 63;
+
 // ---- Events: what the shell takes off the bus, lengths already checked. ----
 
 /// A complete map came into force.

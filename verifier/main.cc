@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 
 #include "bus/advice_receiver.h"
-#include "bus/lcm_url.h"
 #include "bus/number_range.h"
 #include "bus/process.h"
 #include "verifier/verifier_node.h"
@@ -48,9 +47,7 @@ int main(int argc, char** argv) {
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
     auto node =
         std::make_unique<terra::verifier::VerifierNode>(gate, context.out);
-    const auto advice = terra::bus::ParseLcmUrl(context.bus.advice_url);
-    if (!advice) return advice.error();
-    if (!advice->is_udpm() || context.bus.advice_url == context.bus.lcm_url) {
+    if (context.bus.OneBus()) {
       node->ListenToAdvice();
       return std::unique_ptr<terra::bus::Node>(std::move(node));
     }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <variant>
 
+#include "bus/request_tracker.h"
 #include "verifier/gate_codec.h"
 
 namespace terra::verifier {
@@ -30,12 +31,11 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
     if (map_.OnTiles(message, now)) OnMap(now);
   });
   Listen<terra_msg::plan_request_t>([this](const auto& message, bus::Time now) {
-    const bool cancel =
-        message.action == terra_msg::plan_request_t::ACTION_CANCEL;
-    if (!cancel && message.action != terra_msg::plan_request_t::ACTION_GO) {
-      return;
+    if (const auto asked = bus::RequestOf(message); !asked) {
+      CountMalformed(bus::Channel::kPlanRequest, asked.error().message);
+    } else {
+      Decide(ToEvent(message), now);
     }
-    Decide(ToEvent(message), now);
   });
   Listen<baseline_t>([this](const auto& message, bus::Time now) {
     OnBaseline(message, now);
@@ -123,9 +123,12 @@ std::string VerifierNode::state() const {
   return "ready";
 }
 
-// What an advisor said wrong hides nothing that is wrong with the map.
+// What others said wrong hides nothing that is wrong with the map, and advice
+// nothing that is wrong with the baseline.
 std::string VerifierNode::last_error() const {
-  return map_.last_error().empty() ? advice_error_ : map_.last_error();
+  if (!map_.last_error().empty()) return map_.last_error();
+  const std::string malformed = Node::last_error();
+  return malformed.empty() ? advice_error_ : malformed;
 }
 
 void VerifierNode::AddCounters(bus::Counters& counters) const {

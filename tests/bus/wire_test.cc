@@ -1,6 +1,5 @@
 #include "bus/wire.h"
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include "bus/messages.h"
 #include "tests/bus/sample_messages.h"
@@ -197,6 +197,16 @@ TEST(CheckLayoutTest, ACountMayReachItsLimitAndNoMore) {
   EXPECT_FALSE(Fits("N2 b*", {255, 255, 255, 255}));
 }
 
+TEST(CheckLayoutTest, ACountWithoutALimitIsBoundedByTheBytesAfterIt) {
+  EXPECT_TRUE(Fits("N b*", {0, 0, 0, 3, 9, 9, 9}));
+  EXPECT_FALSE(Fits("N b*", {0, 0, 0, 4, 9, 9, 9}));
+  const Status checked = CheckLayout(
+      "N b*", kFingerprint, WithFingerprint({127, 255, 255, 255, 9, 9}));
+  ASSERT_FALSE(checked.ok());
+  EXPECT_EQ(checked.error().message,
+            "malformed message: count 2147483647, at most 2");
+}
+
 TEST(CheckLayoutTest, ACountHoldsForEachArrayAfterIt) {
   EXPECT_TRUE(Fits("N9 b*h*", {0, 0, 0, 2, 1, 1, 2, 2, 2, 2}));
   EXPECT_FALSE(Fits("N9 b*h*", {0, 0, 0, 2, 1, 1, 2, 2, 2}));
@@ -223,6 +233,33 @@ TEST(DecodeTest, NamesAreBounded) {
   EXPECT_TRUE(Decode<terra_msg::verdict_t>(Encode(verdict)).ok());
   verdict.advisor += 'x';
   EXPECT_THROW(Encode(verdict), std::logic_error);
+}
+
+// The gate answers to what is too much for it; nobody can to what does not
+// decode.
+TEST(DecodeTest, WhatIsSaidToTheGateIsBoundedByItsBytesAlone) {
+  constexpr std::int32_t kMany = 7'000;
+  terra_msg::advice_t advice{};
+  advice.advisor.assign(1'000, 'x');
+  advice.num_waypoints = kMany;
+  advice.waypoint_x.resize(kMany);
+  advice.waypoint_y.resize(kMany);
+  EXPECT_TRUE(Decode<terra_msg::advice_t>(Encode(advice)).ok());
+  terra_msg::baseline_t baseline{};
+  baseline.planner.assign(1'000, 'x');
+  baseline.num_waypoints = kMany;
+  baseline.waypoint_x.resize(kMany);
+  baseline.waypoint_y.resize(kMany);
+  EXPECT_TRUE(Decode<terra_msg::baseline_t>(Encode(baseline)).ok());
+}
+
+TEST(DecodeTest, AProcessMayCountAsManyThingsAsItLikes) {
+  constexpr std::int32_t kMany = 300;
+  terra_msg::status_t status{};
+  status.num_counters = kMany;
+  status.counter_name.assign(kMany, "a counter");
+  status.counter_value.assign(kMany, 7);
+  EXPECT_TRUE(Decode<terra_msg::status_t>(Encode(status)).ok());
 }
 
 TEST(EncodeTest, MoreThanALayoutAllowsIsABugOfOurs) {

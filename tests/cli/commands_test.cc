@@ -120,12 +120,22 @@ TEST_F(TerraCommand, EqualCostIsNotCheaper) {
   EXPECT_EQ(nlohmann::json::parse(run.output)["code"], "not_cheaper");
 }
 
-TEST_F(TerraCommand, InvalidBaselineIsAnErrorWithItsVerdict) {
-  const RunResult run = OnMap({"verify", "--baseline", "[(0, 2), (4, 2)]",
-                               "--candidate", "[(0, 2), (2, 0), (4, 2)]"});
-  EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.output, HasSubstr("baseline_invalid"));
-  EXPECT_THAT(run.output, HasSubstr("the baseline is not feasible"));
+TEST_F(TerraCommand, AnInvalidBaselineIsAVerdictLikeAnyOther) {
+  const std::vector<std::string> command = {"verify", "--baseline",
+                                            "[(0, 2), (4, 2)]", "--candidate",
+                                            "[(0, 2), (2, 0), (4, 2)]"};
+  const RunResult text = OnMap(command);
+  EXPECT_EQ(text.exit_code, 0) << text.output;
+  EXPECT_THAT(text.output, HasSubstr("verdict    baseline_invalid"));
+  EXPECT_THAT(text.output, HasSubstr("deployed   nothing"));
+  EXPECT_THAT(text.output, HasSubstr("baseline   obstacle in segment 0"));
+  std::vector<std::string> with_json = command;
+  with_json.push_back("--json");
+  const RunResult run = OnMap(with_json);
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_EQ(json["code"], "baseline_invalid");
+  EXPECT_EQ(json["deployed"], nullptr);
 }
 
 TEST_F(TerraCommand, AdviseBeatsADearBaselineAndRetainsAnOptimalOne) {

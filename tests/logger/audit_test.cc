@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -433,6 +435,112 @@ TEST(Audit, AnAdvisorsContradictionIsANoteInASealedLog) {
   const Audit audit = AuditLog(*reader);
   EXPECT_TRUE(audit.clean()) << Text(audit);
   EXPECT_EQ(audit.notes.size(), 1U);
+}
+
+// ---- Advice that the recorder turned away in a flood. ----
+
+constexpr std::int64_t kRecorder = 31;
+
+// A recorder's heartbeat.
+bus::RawMessage Heartbeat(std::int64_t session, std::int64_t turned_away) {
+  terra_msg::status_t status{};
+  status.session = session;
+  status.num_counters = 2;
+  status.counter_name = {"acknowledged", "advice_over_limit"};
+  status.counter_value = {1, turned_away};
+  return {bus::Channel::kStatus, bus::Encode(status)};
+}
+
+// Audits what a recorder wrote of these messages.
+Audit AuditOfRecording(Messages messages, const bus::RawMessage& heartbeat) {
+  messages.push_back(heartbeat);
+  const TempFolder folder;
+  RecorderOptions options;
+  options.session = kRecorder;
+  Recorder recorder = Recorder::Start(folder.Path(""), options, 1).value();
+  const std::string path = recorder.path();
+  for (const bus::RawMessage& message : messages) {
+    recorder.Record(
+        {1, std::string(bus::BaseName(message.channel)), message.bytes});
+  }
+  EXPECT_TRUE(recorder.Close(1).ok());
+  Result<LogReader> reader = LogReader::Open(path);
+  return AuditLog(*reader);
+}
+
+// Verdicts on an attempt, of them accepted ones.
+std::pair<std::int64_t, std::int64_t> VerdictsOn(const Messages& messages,
+                                                 std::int64_t attempt) {
+  std::pair<std::int64_t, std::int64_t> verdicts;
+  std::int64_t last = 0;
+  for (const verdict_t& verdict : Said<verdict_t>(messages)) {
+    if (verdict.subject != verdict_t::SUBJECT_ADVICE ||
+        verdict.attempt != attempt || verdict.decision == last) {
+      continue;
+    }
+    last = verdict.decision;
+    ++verdicts.first;
+    if (verdict.code == verdict_t::CODE_ACCEPTED) ++verdicts.second;
+  }
+  return verdicts;
+}
+
+TEST(Audit, AdviceThatTheRecorderTurnedAwayIsNoFinding) {
+  const Messages messages = EventfulRun();
+  std::set<std::int64_t> attempts;
+  for (const advice_t& advice : Said<advice_t>(messages)) {
+    attempts.insert(advice.attempt);
+  }
+  std::int64_t passed_over = 0;
+  for (const std::int64_t attempt : attempts) {
+    const auto [verdicts, accepted] = VerdictsOn(messages, attempt);
+    const Messages without = WithoutAttempt(messages, attempt);
+    const Audit audit = AuditOfRecording(without, Heartbeat(kRecorder, 7));
+    EXPECT_TRUE(audit.clean()) << "attempt " << attempt << ": " << Text(audit);
+    EXPECT_EQ(audit.advice_turned_away, 7);
+    EXPECT_EQ(audit.unrecorded, verdicts) << "attempt " << attempt;
+    // Nothing else is lost by it. The route of one that was accepted is the
+    // state to go on from.
+    EXPECT_EQ(audit.anchors, accepted) << "attempt " << attempt;
+    EXPECT_EQ(audit.verdicts + audit.deployed + audit.unrecorded +
+                  audit.anchors + audit.unchecked,
+              DecisionsIn(messages))
+        << "attempt " << attempt;
+    passed_over += audit.unrecorded;
+  }
+  EXPECT_GT(passed_over, 5);
+}
+
+TEST(Audit, MissingAdviceIsAFindingWhereTheRecorderTurnedAwayNothing) {
+  const Messages run = EventfulRun();
+  const auto verdicts = Said<verdict_t>(run);
+  const auto judged = std::ranges::find(
+      verdicts, std::int8_t{verdict_t::SUBJECT_ADVICE}, &verdict_t::subject);
+  ASSERT_NE(judged, verdicts.end());
+  const Messages messages = WithoutAttempt(run, judged->attempt);
+  for (const bus::RawMessage& heartbeat :
+       {Heartbeat(kRecorder, 0), Heartbeat(kRecorder, -7),
+        Heartbeat(kRecorder + 1, 7)}) {
+    const Audit audit = AuditOfRecording(messages, heartbeat);
+    ASSERT_FALSE(audit.clean());
+    EXPECT_EQ(audit.findings[0].kind, Finding::Kind::kMissingInput);
+    EXPECT_EQ(audit.unrecorded, 0);
+  }
+  // In a log without seals a heartbeat proves nothing.
+  Messages unsealed = messages;
+  unsealed.push_back(Heartbeat(kRecorder, 7));
+  EXPECT_FALSE(AuditOf(unsealed).clean());
+}
+
+// What the log holds is judged, flood or not.
+TEST(Audit, AForgedVerdictIsAMismatchInAFloodToo) {
+  const Messages forged =
+      WithChangedVerdict(EventfulRun(), [](verdict_t& verdict) {
+        verdict.candidate_cost = 1.0;
+      });
+  const Audit audit = AuditOfRecording(forged, Heartbeat(kRecorder, 7));
+  ASSERT_FALSE(audit.clean());
+  EXPECT_EQ(audit.unrecorded, 0);
 }
 
 }  // namespace

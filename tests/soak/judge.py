@@ -46,7 +46,8 @@ def _grown(row):
 
 def audit_logs(terra, folder):
     """Audits each log. Returns the sums and what is not explained by the log itself."""
-    sums = {"logs": 0, "clean": 0, "verdicts": 0, "deployed": 0, "notes": 0, "explained": {}}
+    sums = {"logs": 0, "clean": 0, "verdicts": 0, "deployed": 0, "unrecorded": 0, "notes": 0,
+            "explained": {}}
     failures = []
     for log in sorted(folder.glob("*.lcmlog")):
         audit = _json([terra, "log", "audit", log, "--json"])
@@ -56,7 +57,7 @@ def audit_logs(terra, folder):
             continue
         sums["logs"] += 1
         sums["clean"] += audit["clean"]
-        for key in ("verdicts", "deployed"):
+        for key in ("verdicts", "deployed", "unrecorded"):
             sums[key] += audit[key]
         sums["notes"] += len(audit["notes"])
         for finding in audit["findings"]:

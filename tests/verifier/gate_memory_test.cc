@@ -5,34 +5,6 @@
 namespace terra::verifier {
 namespace {
 
-TEST(ReplacedIdsTest, RemembersSoManyAndForgetsTheOldestFirst) {
-  ReplacedIds ids(2);
-  ids.Add(1);
-  ids.Add(2);
-  EXPECT_TRUE(ids.Has(1));
-  ids.Add(3);
-  EXPECT_FALSE(ids.Has(1));
-  EXPECT_TRUE(ids.Has(2));
-  EXPECT_TRUE(ids.Has(3));
-}
-
-TEST(ReplacedIdsTest, AnIdTakesOnePlaceHoweverOftenItIsReplaced) {
-  ReplacedIds ids(2);
-  ids.Add(1);
-  ids.Add(2);
-  ids.Add(2);
-  EXPECT_TRUE(ids.Has(1));
-}
-
-TEST(ReplacedIdsTest, ZeroIsNoIdAndTakesNoPlace) {
-  ReplacedIds ids(2);
-  ids.Add(1);
-  ids.Add(2);
-  ids.Add(0);
-  EXPECT_FALSE(ids.Has(0));
-  EXPECT_TRUE(ids.Has(1));
-}
-
 AdviceEvent Attempt(std::int64_t attempt) {
   AdviceEvent event;
   event.attempt = attempt;

@@ -3,16 +3,21 @@
 #include "verifier/verifier_node.h"
 
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "bus/codec.h"
+#include "bus/request_tracker.h"
 #include "terrain/digest.h"
 #include "terrain/segment.h"
 #include "tests/support/map_messages.h"
+#include "tests/support/random_map.h"
 #include "tests/verifier/gate_field.h"
+#include "verifier/gate_codec.h"
 
 namespace terra::verifier {
 namespace {
@@ -192,6 +197,12 @@ TEST_F(VerifierNodeTest, ARequestWithoutAKnownActionIsNone) {
     Hear(RequestOf(1, static_cast<std::int8_t>(action)));
   }
   EXPECT_TRUE(deployed_.empty());
+  EXPECT_EQ(Counter("malformed"), 4);
+  EXPECT_EQ(node_.last_error(),
+            "TERRA_PLAN_REQUEST: action 127 is neither go (1) nor cancel (2)");
+  Hear(RequestOf(0, plan_request_t::ACTION_GO));
+  EXPECT_EQ(node_.last_error(),
+            "TERRA_PLAN_REQUEST: request_id 0 names no request");
 }
 
 TEST_F(VerifierNodeTest, CancelWithdrawsTheRoute) {
@@ -282,20 +293,96 @@ TEST_F(VerifierNodeTest, AnchorAndPoseAreTheMessages) {
   EXPECT_EQ(verdicts_[0].cost_to_beat, 28);
 }
 
+// As many waypoints as one wants, first at the start and last at the goal.
+template <typename Message>
+void StretchTo(std::size_t num_waypoints, Message& message) {
+  message.waypoint_x.insert(message.waypoint_x.begin(),
+                            num_waypoints - message.waypoint_x.size(),
+                            message.waypoint_x.front());
+  message.waypoint_y.insert(message.waypoint_y.begin(),
+                            num_waypoints - message.waypoint_y.size(),
+                            message.waypoint_y.front());
+  message.num_waypoints = static_cast<std::int32_t>(num_waypoints);
+}
+
+// Whatever fits a message has its verdict, so that its author learns of it.
+TEST_F(VerifierNodeTest, AdviceOfTooManyWaypointsIsToldSo) {
+  GetReady();
+  for (const std::size_t num_waypoints : {2'049U, 3'000U, 7'400U}) {
+    advice_t advice = AdviceOf(kTop);
+    StretchTo(num_waypoints, advice);
+    ASSERT_LE(bus::Encode(advice).size(), bus::kMaxMessageBytes);
+    EXPECT_EQ(CodeFor(advice), Code::kWorkLimit) << num_waypoints;
+    EXPECT_EQ(verdicts_.at(0).attempt, attempt_);
+  }
+  EXPECT_EQ(Counter("malformed_advice"), 0);
+  advice_t advice = AdviceOf(kTop);
+  StretchTo(2'048, advice);
+  EXPECT_EQ(CodeFor(advice), Code::kAccepted);
+}
+
+TEST_F(VerifierNodeTest, ABaselineOfTooManyWaypointsIsToldSo) {
+  HearMap();
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  baseline_t baseline = BaselineOf(1, kStraight);
+  StretchTo(2'049, baseline);
+  baseline.baseline_digest =
+      BaselineDigest(1, map_id_, bus::WaypointsOf(baseline));
+  Hear(baseline);
+  ASSERT_EQ(verdicts_.size(), 1u);
+  EXPECT_EQ(verdicts_[0].subject, verdict_t::SUBJECT_BASELINE);
+  EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_WORK_LIMIT);
+  EXPECT_EQ(deployed_.back().mode, deployed_t::MODE_HOLD);
+  EXPECT_EQ(Counter("malformed"), 0);
+}
+
+TEST_F(VerifierNodeTest, ABaselineOfAPlannerWithTooLongANameIsToldSo) {
+  HearMap();
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  baseline_t baseline = BaselineOf(1, kStraight);
+  baseline.planner.assign(bus::kMaxNameBytes + 1, 'x');
+  Hear(baseline);
+  ASSERT_EQ(verdicts_.size(), 1u);
+  EXPECT_EQ(verdicts_[0].subject, verdict_t::SUBJECT_BASELINE);
+  EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_MALFORMED_MESSAGE);
+  EXPECT_EQ(verdicts_[0].advisor, std::string(bus::kMaxNameBytes, 'x'));
+  EXPECT_EQ(deployed_.back().mode, deployed_t::MODE_HOLD);
+  baseline = BaselineOf(1, kStraight);
+  baseline.planner.assign(bus::kMaxNameBytes, 'x');
+  Hear(baseline);
+  EXPECT_EQ(deployed_.back().mode, deployed_t::MODE_HOLD)
+      << "its digest is that of the one refused";
+}
+
+TEST_F(VerifierNodeTest, SaysWhatIsWrongWithAMessageThatDoesNotDecode) {
+  GetReady();
+  std::vector<std::uint8_t> bytes = bus::Encode(BaselineOf(1, kTop));
+  bytes.pop_back();
+  node_.Receive({bus::Channel::kBaseline, bytes}, now_);
+  EXPECT_EQ(Counter("malformed"), 1);
+  EXPECT_NE(node_.last_error().find("TERRA_BASELINE: malformed message"),
+            std::string::npos)
+      << node_.last_error();
+}
+
 // What the gate says repeats the names of others. If they had no bound, advice
 // that is accepted could keep DEPLOYED from ever fitting a message again.
 TEST_F(VerifierNodeTest, NoNameKeepsTheGateFromSpeaking) {
   GetReady();
   advice_t advice = AdviceOf(kTop);
-  advice.advisor.assign(59'800, 'x');
-  Advise(advice);
-  EXPECT_EQ(Counter("malformed_advice"), 1);
+  for (const std::size_t length : {std::size_t{59'700}, kMaxNameBytes + 1}) {
+    advice = AdviceOf(kTop);
+    advice.advisor.assign(length, 'x');
+    EXPECT_EQ(CodeFor(advice), Code::kMalformedMessage);
+    EXPECT_EQ(verdicts_.at(0).advisor, std::string(kMaxNameBytes, 'x'));
+  }
   EXPECT_EQ(Counter("accepted"), 0);
   const std::size_t said = deployed_.size();
   now_ += milliseconds(200);
   node_.Advance(now_);
   EXPECT_EQ(deployed_.size(), said + 1);
-  advice.advisor.resize(bus::kMaxNameBytes);
+  advice = AdviceOf(kTop);
+  advice.advisor.assign(kMaxNameBytes, 'x');
   EXPECT_EQ(CodeFor(advice), Code::kAccepted);
   EXPECT_EQ(deployed_.back().source.size(), bus::kMaxNameBytes);
 }
@@ -335,6 +422,56 @@ TEST_F(VerifierNodeTest, StateSaysWhatIsInForce) {
   EXPECT_EQ(node_.state(), "ready, baseline deployed");
   Advise(AdviceOf(kTop));
   EXPECT_EQ(node_.state(), "ready, candidate deployed");
+}
+
+// ---- The request in force, for the gate and for a planner. ----
+
+std::int64_t AnyOf(testing::Random& random,
+                   std::initializer_list<std::int64_t> numbers) {
+  return *(numbers.begin() +
+           random.Int(0, static_cast<int>(numbers.size()) - 1));
+}
+
+// An answer is a BASELINE to the one and a DEPLOYED to the other.
+TEST(RequestInForceTest, GateAndPlannerHoldTheSameAfterTheSameMessages) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  for (std::uint64_t seed = 0; seed < 2'000; ++seed) {
+    testing::Random random(seed);
+    Gate gate;
+    bus::RequestTracker planner;
+    for (int i = 0; i < 60; ++i) {
+      const std::int64_t id = AnyOf(random, {0, 1, 2, 3, 4, -1, kMost});
+      const Cell start = {random.Int(0, 2), 0};
+      if (random.OneIn(2)) {
+        plan_request_t message{};
+        message.request_id = id;
+        message.action = static_cast<std::int8_t>(
+            AnyOf(random, {plan_request_t::ACTION_GO, plan_request_t::ACTION_GO,
+                           plan_request_t::ACTION_CANCEL, 0, 3}));
+        message.start_x = start.x;
+        planner.OnRequest(message);
+        if (bus::RequestOf(message)) gate.On(ToEvent(message));
+      } else {
+        baseline_t message{};
+        message.request_id = id;
+        message.session = AnyOf(random, {0, 0, 70, 71, -1});
+        message.status = random.OneIn(5) ? baseline_t::STATUS_CANCELLED
+                                         : baseline_t::STATUS_NO_ROUTE;
+        message.start_x = start.x;
+        const BaselineEvent event = ToEvent(message);
+        gate.On(event);
+        planner.OnAnswer({id, event.cancelled, 0, event.start, event.goal},
+                         event.session);
+      }
+      ASSERT_EQ(gate.deployed().request_id, planner.current().request_id)
+          << "sequence " << seed;
+      ASSERT_EQ(gate.deployed().start, planner.current().start)
+          << "sequence " << seed;
+      ASSERT_EQ(gate.deployed().cause == Cause::kCancelled,
+                planner.current().cancelled)
+          << "sequence " << seed;
+    }
+  }
 }
 
 }  // namespace

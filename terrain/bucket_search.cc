@@ -51,6 +51,23 @@ constexpr StepSets kNaturalSteps = [] {
   return sets;
 }();
 
+// The labels of a search, for its path to be read from.
+template <typename Key>
+class LabelsOfPaths {
+ public:
+  // `mark`: above every key of this search, below those of the searches before.
+  LabelsOfPaths(SearchLabels<Key>& labels, Key mark)
+      : labels_(labels), mark_(mark) {}
+
+  Key At(std::size_t index) const { return labels_.At(index); }
+  bool MayVisit(std::size_t index) const { return labels_.At(index) != mark_; }
+  void Mark(std::size_t index) { labels_.Set(index, mark_); }
+
+ private:
+  SearchLabels<Key>& labels_;
+  Key mark_;
+};
+
 }  // namespace
 
 template <typename Keys>
@@ -138,16 +155,17 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   }
   if (attempt.found) {
     attempt.beyond_keys = false;
-    attempt.cells = ExtractPath(map, keys, start, goal, [this](std::size_t i) {
-      return labels_.At(i);
-    });
+    LabelsOfPaths<Key> labels(labels_, origin + Keys::kNone);
+    attempt.cells = PathExtraction(map, keys, start, goal, labels).Run();
   }
   return attempt;
 }
 
 static_assert(WideKeys::kNone >> SearchLabels<WideKeys::Key>::kKeyBits == 0);
+static_assert(RoundedKeys::kNone >> SearchLabels<RoundedKeys::Key>::kKeyBits ==
+              0);
 
 template class BucketSearch<WideKeys>;
-template class BucketSearch<DoubleKeys>;
+template class BucketSearch<RoundedKeys>;
 
 }  // namespace terra

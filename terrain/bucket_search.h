@@ -23,7 +23,8 @@ class BucketSearch {
  public:
   using Key = typename Keys::Key;
 
-  /// Finds a path of the smallest key below `bound` (at most Keys::kLimit).
+  /// Finds the path (SearchResult::cells) of the smallest key below `bound` (at
+  /// most Keys::kLimit), whatever the bound.
   /// Pre: both ends passable.
   SearchAttempt Run(const TerrainMap& map, const Keys& keys, Cell start,
                     Cell goal, Key bound);
@@ -58,6 +59,6 @@ class BucketSearch {
 };
 
 extern template class BucketSearch<WideKeys>;
-extern template class BucketSearch<DoubleKeys>;
+extern template class BucketSearch<RoundedKeys>;
 
 }  // namespace terra

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "terrain/bucket_queue.h"
 #include "terrain/cell.h"
@@ -53,9 +54,13 @@ class BucketSearch {
 
   void Push(std::size_t index, Key total, const Entry& entry);
   void Expand(Task& task, const Entry& entry, std::size_t index);
+  CellPath ReadPath(const TerrainMap& map, const Task& task, Cell start,
+                    Key mark);
 
   SearchLabels<Key> labels_;
   BucketQueue<Key, Entry> queue_;
+  std::vector<Entry> taken_;    // Out of the bucket that is being emptied.
+  std::vector<Entry> as_good_;  // Dropped: their total is the goal's key.
 };
 
 extern template class BucketSearch<WideKeys>;

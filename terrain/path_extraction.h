@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,36 +20,49 @@ namespace terra {
 /// straight ahead, else the first clockwise from there; from the goal,
 /// clockwise from east.
 ///
-/// The rule speaks of all cheapest paths, but a search need not label all their
-/// cells. It may leave out those whose key and octile bound to the goal add up
-/// to the goal's key: from there on the path crosses nothing but the cheapest
-/// ground, so it can be walked back without labels. Where such a walk comes to
-/// no labelled cell it is taken back, and what it saw is marked, so that no
-/// cell is looked at twice. All other cells of cheapest paths must have their
-/// final key.
+/// The rule speaks of all cheapest paths, so the cells of all of them must have
+/// their final key, but for those whose key and octile bound to the goal add up
+/// to the goal's key. From such a cell on, the path crosses nothing but the
+/// cheapest ground and leads straight to the goal; it can be walked back
+/// without labels. A search that leaves out such cells names others of their
+/// kind, the sources, so that each of them lies on an octile path from a source
+/// to the goal. Where a walk without labels comes to no labelled cell it is
+/// taken back, and what it saw is marked, so that no cell is looked at twice.
 ///
 /// Labels has the keys by the index of cells in the CostGrid:
-///   Key At(index)        the cell's key; at least kLimit where it has none;
-///   bool MayVisit(index) false where no path may lead, and once marked;
-///   void Mark(index)     takes a cell without a final key out of the search.
+///   Key At(index)          the cell's key; at least kLimit where it has none;
+///   bool IsMarked(index),
+///   void Mark(index)       for cells without a final key.
 /// Keys of which all this is not true are a caller's bug and end in an error.
 template <typename Keys, typename Labels>
 class PathExtraction {
  public:
   using Key = typename Keys::Key;
+  struct Source {
+    Cell cell;
+    Key key;
+  };
 
   PathExtraction(const TerrainMap& map, const Keys& keys, Cell start, Cell goal,
                  Labels& labels)
       : map_(map),
         keys_(keys),
         grid_(map),
-        from_start_(keys, start),
         to_goal_(keys, goal),
         start_(start),
         goal_(goal),
         labels_(labels),
-        origin_(labels.At(map.cost_grid().Index(start))),
         total_(labels.At(map.cost_grid().Index(goal))) {}
+
+  /// Without sources no cell may lack its key.
+  void AddSource(const Source& source) {
+    const auto covers = [&](const Source& known) {
+      return Covers(known, source.cell, source.key);
+    };
+    if (std::none_of(sources_.begin(), sources_.end(), covers)) {
+      sources_.push_back(source);
+    }
+  }
 
   CellPath Run() {
     Stand at{goal_, map_.cost_grid().Index(goal_), total_, 0, 0};
@@ -88,7 +102,8 @@ class PathExtraction {
     const Key straight = keys_.Straight(code);
     const Key diagonal = keys_.Diagonal(code);
     const Key to_goal = to_goal_(at.cell.x, at.cell.y);
-    const bool may_lack_labels = at.key + to_goal == total_;
+    const bool may_lack_labels =
+        !sources_.empty() && at.key + to_goal == total_;
     for (; at.turns < kSteps.size(); ++at.turns) {
       const std::size_t d = (at.ahead + at.turns) % kSteps.size();
       const std::size_t index = grid_.Neighbour(at.index, d);
@@ -107,25 +122,34 @@ class PathExtraction {
   }
 
   // Whether a neighbour without a final key may be on a cheapest path, as far
-  // as its place tells: the octile bound must be what the way on costs, and the
-  // way from the start may not be too long.
+  // as its place tells: the octile bound must be what the way on costs, and
+  // what the way from a source costs.
   bool MayLeadHere(Cell cell, std::size_t index, Key step, const Stand& at,
                    Key to_goal) const {
-    return grid_.Code(index) != 0 && labels_.MayVisit(index) &&
+    return grid_.Code(index) != 0 && !labels_.IsMarked(index) &&
            to_goal_(cell.x, cell.y) == to_goal + step &&
-           origin_ + from_start_(cell.x, cell.y) + step <= at.key;
+           std::any_of(sources_.begin(), sources_.end(),
+                       [&](const Source& source) {
+                         return Covers(source, cell, at.key - step);
+                       });
+  }
+
+  // Whether an octile path from the source gives a cell this key.
+  bool Covers(const Source& source, Cell cell, Key key) const {
+    return source.key +
+               OctileBound<Keys>(keys_, cell)(source.cell.x, source.cell.y) ==
+           key;
   }
 
   const TerrainMap& map_;
   const Keys& keys_;
   const GridSteps grid_;
-  const OctileBound<Keys> from_start_;
   const OctileBound<Keys> to_goal_;
   const Cell start_;
   const Cell goal_;
   Labels& labels_;
-  const Key origin_;
   const Key total_;
+  std::vector<Source> sources_;
   std::vector<Stand> path_;
 };
 

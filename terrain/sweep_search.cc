@@ -44,10 +44,8 @@ bool MayHaveDropped(const SweepTask& task, const NarrowKeys& keys,
 }
 
 // The keys of a sweep, for its path to be read from. Rows that the sweep did
-// not come to still hold keys of earlier searches. No cheapest path leads
-// there: it would leave the swept rows over cells that have their final keys,
-// and these would have had the next row swept, or on the way straight to the
-// goal.
+// not come to still hold keys of earlier searches. No cell of a cheapest path
+// lacks its key.
 class KeysOfPaths {
  public:
   explicit KeysOfPaths(const SweepTask& task)
@@ -56,20 +54,18 @@ class KeysOfPaths {
         end_(RowBegin(task, task.last_row + 1)) {}
 
   Key At(std::size_t index) const {
-    return index >= first_ && index < end_ ? keys_[index] : kMark;
+    return index >= first_ && index < end_ ? keys_[index] : NarrowKeys::kLimit;
   }
-  bool MayVisit(std::size_t index) const { return At(index) != kMark; }
-  void Mark(std::size_t index) { keys_[index] = kMark; }
+  bool IsMarked(std::size_t /*index*/) const { return true; }
+  void Mark(std::size_t /*index*/) {}
 
  private:
-  static constexpr Key kMark = NarrowKeys::kNone;
-
   static std::size_t RowBegin(const SweepTask& task, int row) {
     return static_cast<std::size_t>(row) *
            static_cast<std::size_t>(task.stride);
   }
 
-  Key* keys_;
+  const Key* keys_;
   std::size_t first_;
   std::size_t end_;
 };

@@ -194,7 +194,10 @@ VectorXd Weights(const TerrainMap& map, const Route& route, CampanaForm form) {
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     const Cell from = route[static_cast<std::size_t>(i)];
     const Cell to = route[static_cast<std::size_t>(i) + 1];
-    const double length = std::hypot(to.x - from.x, to.y - from.y);
+    // Not std::hypot, whose last bit is the library's business.
+    const double dx = to.x - from.x;
+    const double dy = to.y - from.y;
+    const double length = std::sqrt(dx * dx + dy * dy);
     weights(i) = form == CampanaForm::kTerrainWeighted
                      ? SegmentCost(map, from, to) / (length * length)
                      : 1 / length;

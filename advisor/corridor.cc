@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <queue>
+#include <utility>
 #include <vector>
 
 #include "advisor/route_moves.h"
+#include "terrain/path_extraction.h"
 #include "terrain/require.h"
 #include "terrain/route_cost.h"
+#include "terrain/search_attempt.h"
 #include "terrain/search_ends.h"
+#include "terrain/search_keys.h"
 #include "terrain/search_steps.h"
 #include "terrain/segment.h"
 
@@ -35,102 +38,102 @@ void SpreadAlongRows(ByteRaster& raster, int distance) {
   raster = (raster != 0).cast<std::uint8_t>();  // All reached ones are marked.
 }
 
-double OctileDistance(Cell a, Cell b) {
-  const int dx = std::abs(a.x - b.x);
-  const int dy = std::abs(a.y - b.y);
-  return std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy);
-}
-
+// A* over the corridor's cells. It goes on while a path of the goal's key may
+// come, so that the tie rule finds the final keys of all cheapest paths.
 class CorridorSearch {
  public:
-  CorridorSearch(const TerrainMap& map, const Corridor& corridor, Cell goal)
+  using Key = RoundedKeys::Key;
+
+  CorridorSearch(const TerrainMap& map, const Corridor& corridor,
+                 const RoundedKeys& keys, Cell goal)
       : map_(map),
         corridor_(corridor),
+        keys_(keys),
+        grid_(map),
+        to_goal_(keys, goal),
         goal_(goal),
         labels_(static_cast<std::size_t>(corridor.width()) *
-                static_cast<std::size_t>(corridor.height())) {}
+                    static_cast<std::size_t>(corridor.height()),
+                RoundedKeys::kNone) {}
 
-  SearchResult Run(Cell start) {
-    SearchResult result;
-    Reach(start, 0, kNoDirection);
-    while (!open_.empty()) {
+  SearchAttempt Run(Cell start) {
+    Reach(start, 0);
+    while (!open_.empty() && open_.top().total <= LabelOf(goal_)) {
       const Entry entry = open_.top();
       open_.pop();
-      if (entry.cost > At(entry.cell).cost) continue;  // A better one came.
-      ++result.expanded;
-      if (entry.cell == goal_) {
-        result.status = SearchStatus::kFound;
-        result.cells = PathFrom(start);
-        result.cost = WalkRoute(map_, result.cells).cost;
-        break;
-      }
+      if (entry.key > LabelOf(entry.cell)) continue;  // A better one came.
+      ++attempt_.expanded;
       Expand(entry);
     }
-    return result;
+    if (LabelOf(goal_) < RoundedKeys::kLimit) {
+      attempt_.found = true;
+      attempt_.beyond_keys = false;
+      attempt_.cells = PathExtraction(map_, keys_, start, goal_, *this).Run();
+    }
+    return std::move(attempt_);
   }
 
- private:
-  static constexpr std::uint8_t kNoDirection = 8;
+  // Labels as PathExtraction asks for them. None is ever missing.
+  Key At(std::size_t index) const {
+    const Cell cell = map_.cost_grid().CellAt(index);
+    return corridor_.Contains(cell) ? LabelOf(cell) : RoundedKeys::kNone;
+  }
+  bool IsMarked(std::size_t /*index*/) const { return true; }
+  void Mark(std::size_t /*index*/) {}
 
-  struct Label {
-    double cost = kImpassable;  // From the start.
-    std::uint8_t arrival = kNoDirection;
-  };
+ private:
   struct Entry {
-    double bound;  // Of a path from start to goal through the cell.
-    double cost;
+    Key total;  // Of a path from start to goal through the cell, at least.
+    Key key;
     Cell cell;
 
     friend bool operator>(const Entry& a, const Entry& b) {
-      return a.bound > b.bound;
+      return a.total > b.total;
     }
   };
 
-  Label& At(Cell c) {
+  std::size_t Place(Cell c) const {
     const Cell origin = corridor_.origin();
-    return labels_[static_cast<std::size_t>(c.y - origin.y) *
-                       static_cast<std::size_t>(corridor_.width()) +
-                   static_cast<std::size_t>(c.x - origin.x)];
+    return static_cast<std::size_t>(c.y - origin.y) *
+               static_cast<std::size_t>(corridor_.width()) +
+           static_cast<std::size_t>(c.x - origin.x);
   }
+  Key LabelOf(Cell c) const { return labels_[Place(c)]; }
 
-  void Reach(Cell c, double cost, std::uint8_t arrival) {
-    Label& label = At(c);
-    if (cost >= label.cost) return;
-    label = {cost, arrival};
-    open_.push(
-        {cost + map_.costs().min_cost() * OctileDistance(c, goal_), cost, c});
+  void Reach(Cell c, Key key) {
+    if (key >= LabelOf(c)) return;
+    const Key total = key + to_goal_(c.x, c.y);
+    if (total >= RoundedKeys::kLimit) {
+      attempt_.beyond_keys = true;
+      return;
+    }
+    labels_[Place(c)] = key;
+    open_.push({total, key, c});
   }
 
   void Expand(const Entry& entry) {
-    const Cell from = entry.cell;
-    for (std::uint8_t d = 0; d < kSteps.size(); ++d) {
-      const Cell to{from.x + kSteps[d].x, from.y + kSteps[d].y};
-      if (!corridor_.Contains(to) || !map_.Passable(to)) continue;
-      const bool diagonal = d % 2 == 1;
-      if (diagonal && !map_.cost_model().corner_cutting &&
-          (!map_.Passable({from.x, to.y}) || !map_.Passable({to.x, from.y}))) {
+    const std::size_t index = map_.cost_grid().Index(entry.cell);
+    for (std::size_t d = 0; d < kSteps.size(); ++d) {
+      const Cell to{entry.cell.x + kSteps[d].x, entry.cell.y + kSteps[d].y};
+      const std::uint16_t code = grid_.Code(grid_.Neighbour(index, d));
+      if (code == 0 || !corridor_.Contains(to) ||
+          !grid_.MayPassCorner(index, d)) {
         continue;
       }
-      const double length = diagonal ? std::numbers::sqrt2 : 1;
-      Reach(to, entry.cost + length * map_.Cost(to), d);
+      Reach(to, entry.key +
+                    (d % 2 == 0 ? keys_.Straight(code) : keys_.Diagonal(code)));
     }
-  }
-
-  CellPath PathFrom(Cell start) {
-    CellPath cells = {goal_};
-    while (cells.back() != start) {
-      const Cell step = kSteps[At(cells.back()).arrival];
-      cells.push_back({cells.back().x - step.x, cells.back().y - step.y});
-    }
-    std::reverse(cells.begin(), cells.end());
-    return cells;
   }
 
   const TerrainMap& map_;
   const Corridor& corridor_;
-  Cell goal_;
-  std::vector<Label> labels_;
+  const RoundedKeys& keys_;
+  const GridSteps grid_;
+  const OctileBound<RoundedKeys> to_goal_;
+  const Cell goal_;
+  std::vector<Key> labels_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open_;
+  SearchAttempt attempt_;
 };
 
 }  // namespace
@@ -179,7 +182,21 @@ SearchResult SearchCorridor(const TerrainMap& map, const Corridor& corridor,
     result.status = SearchStatus::kNoRoute;
     return result;
   }
-  return CorridorSearch(map, corridor, goal).Run(start);
+  const int num_levels = RoundedKeys::NumLevels(map);
+  SearchAttempt last;
+  last.beyond_keys = true;
+  for (int level = 0; last.beyond_keys && level < num_levels; ++level) {
+    const RoundedKeys keys(map, level);
+    last = CorridorSearch(map, corridor, keys, goal).Run(start);
+    result.expanded += last.expanded;
+  }
+  if (!last.found) {
+    result.status = SearchStatus::kNoRoute;
+    return result;
+  }
+  result.cost = WalkRoute(map, last.cells).cost;
+  result.cells = std::move(last.cells);
+  return result;
 }
 
 Route RouteInCorridor(const TerrainMap& map, const Corridor& corridor,

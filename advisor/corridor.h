@@ -38,7 +38,8 @@ class Corridor {
 };
 
 /// Finds a cheapest 8-connected path that never leaves a corridor, by the
-/// project's cost rule and the map's cost model. Costs are compared in doubles.
+/// project's cost rule and the map's cost model. Costs are compared as
+/// RoundedKeys; ties: SearchResult::cells, of the paths in the corridor.
 /// Source: A*: Hart, Nilsson, Raphael 1968.
 SearchResult SearchCorridor(const TerrainMap& map, const Corridor& corridor,
                             Cell start, Cell goal);

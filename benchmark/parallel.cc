@@ -18,14 +18,21 @@ void ParallelFor(std::int64_t count, int jobs,
                  const std::function<void(std::int64_t)>& work) {
   std::atomic<std::int64_t> next{0};
   std::mutex mutex;
+  // Of the first piece that failed, not of the first to fail: all pieces before
+  // it are taken and done.
   std::exception_ptr failure;
+  std::int64_t failed = count;
   const auto run = [&] {
+    std::int64_t i = 0;
     try {
-      for (std::int64_t i = next++; i < count; i = next++) work(i);
+      for (i = next++; i < count; i = next++) work(i);
     } catch (...) {
       next = count;
       const std::scoped_lock lock(mutex);
-      if (!failure) failure = std::current_exception();
+      if (i < failed) {
+        failed = i;
+        failure = std::current_exception();
+      }
     }
   };
   {

@@ -59,7 +59,10 @@ class Search {
            static_cast<std::size_t>(c.x);
   }
   double Distance(Cell a, Cell b) const {
-    return map_.costs().min_cost() * std::hypot(a.x - b.x, a.y - b.y);
+    // Not std::hypot, whose last bit is the library's business.
+    const double dx = a.x - b.x;
+    const double dy = a.y - b.y;
+    return map_.costs().min_cost() * std::sqrt(dx * dx + dy * dy);
   }
   double Value(Cell c, double g) const {
     const Cell target = target_ < targets_.size() ? targets_[target_] : goal_;

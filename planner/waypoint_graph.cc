@@ -1,9 +1,13 @@
 #include "planner/waypoint_graph.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <queue>
+#include <tuple>
+#include <utility>
 
+#include "planner/step_costs.h"
 #include "terrain/require.h"
 #include "terrain/route_cost.h"
 #include "terrain/search_ends.h"
@@ -11,31 +15,38 @@
 namespace terra::planner {
 namespace {
 
+// Dijkstra from the goal backwards, so that afterwards every vertex knows what
+// is still to come and the smallest sequence is read off from the start. Labels
+// are (cost, raster steps) in lexicographic order.
+template <typename Arithmetic>
 class GraphSearch {
  public:
-  GraphSearch(const TerrainMap& map, const WaypointGraph& graph, int reach)
+  GraphSearch(const TerrainMap& map, const WaypointGraph& graph, Cell start,
+              Cell goal, int reach)
       : map_(map),
+        costs_(map),
         graph_(graph),
         reach_(reach),
         start_(graph.nodes().size()),
         goal_(start_ + 1),
-        cells_(start_ + 2),
         labels_(start_ + 2) {
-    for (std::size_t i = 0; i < start_; ++i) cells_[i] = graph.nodes()[i].cell;
+    for (const WaypointGraph::Node& node : graph.nodes()) {
+      cells_.push_back(node.cell);
+    }
+    cells_.push_back(start);
+    cells_.push_back(goal);
   }
 
-  LatticePlan Run(Cell start, Cell goal) {
-    cells_[start_] = start;
-    cells_[goal_] = goal;
-    Reach(start_, 0, start_);
+  LatticePlan Run() {
+    Reach(goal_, {Cost{}, 0});
     while (!open_.empty()) {
       const Entry entry = open_.top();
       open_.pop();
-      if (entry.cost > labels_[entry.vertex].cost) continue;  // Found cheaper.
+      if (labels_[entry.vertex] < entry.label) continue;  // Found cheaper.
       ++plan_.expanded;
-      if (entry.vertex == goal_) {
+      if (entry.vertex == start_) {
         plan_.status = SearchStatus::kFound;
-        plan_.waypoints = RouteToGoal();
+        plan_.waypoints = RouteFromStart();
         plan_.cost = WalkRoute(map_, plan_.waypoints).cost;
         break;
       }
@@ -45,58 +56,134 @@ class GraphSearch {
   }
 
  private:
+  using Cost = typename Arithmetic::Cost;
+
   struct Label {
-    double cost = kImpassable;  // From the start.
-    std::size_t before = 0;     // The vertex that the way comes from.
+    Cost cost = Arithmetic::kUnreached;  // From here to the goal.
+    std::int64_t steps = 0;
+
+    friend bool operator<(const Label& a, const Label& b) {
+      return std::tie(a.cost, a.steps) < std::tie(b.cost, b.steps);
+    }
+    friend bool operator==(const Label&, const Label&) = default;
   };
   struct Entry {
-    double cost;
+    Label label;
     std::size_t vertex;
 
-    friend auto operator<=>(const Entry&, const Entry&) = default;
+    friend bool operator>(const Entry& a, const Entry& b) {
+      return b.label < a.label;
+    }
   };
 
-  void Reach(std::size_t vertex, double cost, std::size_t before) {
-    if (cost >= labels_[vertex].cost) return;
-    labels_[vertex] = {cost, before};
-    open_.push({cost, vertex});
+  void Reach(std::size_t vertex, const Label& label) {
+    if (!(label < labels_[vertex])) return;
+    labels_[vertex] = label;
+    open_.push({label, vertex});
   }
 
-  void FollowSegment(const Entry& from, std::size_t to) {
+  // The label of the way over a segment; unreached where it is not feasible.
+  Label Over(std::size_t from, std::size_t to) const {
+    const Cell a = cells_[from];
+    const Cell b = cells_[to];
+    if (!map_.Contains(a) || !map_.Contains(b) || !map_.Passable(a)) return {};
+    const Cost cost = costs_.Segment(a, b);
+    if (!(cost < Arithmetic::kUnreached)) return {};
+    return {cost + labels_[to].cost,
+            ChebyshevDistance(a, b) + labels_[to].steps};
+  }
+
+  void FollowBack(std::size_t from, std::size_t to) {
     ++plan_.edges_costed;
-    const double cost = SegmentCost(map_, cells_[from.vertex], cells_[to]);
-    if (cost < kImpassable) Reach(to, from.cost + cost, from.vertex);
+    Reach(from, Over(from, to));
   }
 
   bool WithinReach(std::size_t a, std::size_t b) const {
     return ChebyshevDistance(cells_[a], cells_[b]) <= reach_;
   }
 
-  void Expand(const Entry& from) {
-    if (from.vertex == start_) {
+  void Expand(const Entry& to) {
+    if (to.vertex == goal_) {
       for (std::size_t node = 0; node < start_; ++node) {
-        if (WithinReach(start_, node)) FollowSegment(from, node);
+        if (WithinReach(node, goal_)) FollowBack(node, goal_);
       }
     } else {
-      for (const std::size_t node : graph_.Neighbours(from.vertex)) {
-        FollowSegment(from, node);
+      for (const std::size_t node : graph_.Neighbours(to.vertex)) {
+        FollowBack(node, to.vertex);
       }
     }
-    if (WithinReach(from.vertex, goal_)) FollowSegment(from, goal_);
+    if (WithinReach(start_, to.vertex)) FollowBack(start_, to.vertex);
+  }
+
+  // Calls visit(vertex) for each vertex that a best way leads to from here.
+  template <typename Visit>
+  void ForEachNext(std::size_t from, const Visit& visit) const {
+    const auto try_next = [&](std::size_t to) {
+      if (labels_[to].cost < Arithmetic::kUnreached &&
+          Over(from, to) == labels_[from]) {
+        visit(to);
+      }
+    };
+    if (from == start_) {
+      for (std::size_t node = 0; node < start_; ++node) {
+        if (WithinReach(start_, node)) try_next(node);
+      }
+    } else {
+      for (const std::size_t node : graph_.Neighbours(from)) try_next(node);
+    }
+    if (WithinReach(from, goal_)) try_next(goal_);
+  }
+
+  // Adds to vertices of one cell those of the same cell that best ways lead to.
+  void AddVerticesOfCell(std::vector<std::size_t>& vertices) const {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      ForEachNext(vertices[i], [&](std::size_t next) {
+        if (cells_[next] == cells_[vertices[i]]) AddOnce(vertices, next);
+      });
+    }
+  }
+
+  static void AddOnce(std::vector<std::size_t>& vertices, std::size_t vertex) {
+    if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) {
+      vertices.push_back(vertex);
+    }
+  }
+
+  // From the vertices at a cell, those at the first cell in row order that a
+  // best way leads to.
+  std::vector<std::size_t> FirstNext(
+      const std::vector<std::size_t>& from) const {
+    std::vector<std::size_t> first;
+    const auto place = [this](std::size_t vertex) {
+      return std::pair(cells_[vertex].y, cells_[vertex].x);
+    };
+    for (const std::size_t vertex : from) {
+      ForEachNext(vertex, [&](std::size_t next) {
+        if (cells_[next] == cells_[vertex]) return;
+        if (!first.empty() && place(next) < place(first.front())) first.clear();
+        if (first.empty() || place(next) == place(first.front())) {
+          AddOnce(first, next);
+        }
+      });
+    }
+    TERRA_REQUIRE(!first.empty());
+    return first;
   }
 
   // An end that lies on a node is one waypoint with it.
-  Route RouteToGoal() const {
-    Route route = {cells_[goal_]};
-    for (std::size_t at = goal_; at != start_;) {
-      at = labels_[at].before;
-      if (cells_[at] != route.back()) route.push_back(cells_[at]);
+  Route RouteFromStart() const {
+    std::vector<std::size_t> at = {start_};
+    Route route;
+    for (;;) {
+      route.push_back(cells_[at.front()]);
+      if (route.back() == cells_[goal_]) return route;
+      AddVerticesOfCell(at);
+      at = FirstNext(at);
     }
-    std::reverse(route.begin(), route.end());
-    return route;
   }
 
   const TerrainMap& map_;
+  StepCosts<Arithmetic> costs_;
   const WaypointGraph& graph_;
   int reach_;
   // Vertices: the graph's nodes, then start and goal.
@@ -132,7 +219,10 @@ LatticePlan PlanOnGraph(const TerrainMap& map, const WaypointGraph& graph,
     plan.cost = 0;
     return plan;
   }
-  return GraphSearch(map, graph, reach).Run(start, goal);
+  if (map.costs().scale != 0) {
+    return GraphSearch<ExactArithmetic>(map, graph, start, goal, reach).Run();
+  }
+  return GraphSearch<DoubleArithmetic>(map, graph, start, goal, reach).Run();
 }
 
 }  // namespace terra::planner

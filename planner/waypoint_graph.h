@@ -55,7 +55,9 @@ inline constexpr int kMaxReach = 1000;  ///< Bounds the work of joining them.
 /// lead from the start to the nodes, from the nodes to the goal, and from start
 /// to goal, within max(|dx|, |dy|) <= reach.
 /// Pre:    reach is 0 to kMaxReach.
-/// Ties: of equally cheap ways the one found first; the same on every run.
+/// Ties: as on the lattice, fewest raster steps, then the smallest sequence of
+///       cells in row order; neither names nor the order of nodes matter. Costs
+///       are exact where CostTable has units, else sums of doubles.
 /// Threads: reentrant.
 /// Source: Dijkstra 1959 (Numerische Mathematik 1).
 LatticePlan PlanOnGraph(const TerrainMap& map, const WaypointGraph& graph,

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <concepts>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 namespace terra {
@@ -14,26 +14,21 @@ namespace terra {
 /// improved after it was taken.
 ///
 /// Source: Dial 1969 (CACM 12:11), with buckets wider than one key as in
-/// Denardo
-///         and Fox 1979 (Operations Research 27:1).
-template <typename Key, typename Entry>
+///         Denardo and Fox 1979 (Operations Research 27:1).
+template <std::unsigned_integral Key, typename Entry>
 class BucketQueue {
  public:
   /// Empties the queue. Every key pushed is at least `first`, and at most
-  /// `span` above the last one popped. Buckets are `width` wide (integers: the
-  /// power of two below), or wider where the span would need too many of them.
+  /// `span` above the last one popped. Buckets are as wide as the power of two
+  /// below `width`, or wider where the span would need too many of them.
   void Reset(Key first, Key width, Key span) {
     for (std::vector<Entry>& bucket : buckets_) {
       bucket.clear();
     }
     first_ = first;
     width = std::max(width, span / static_cast<Key>(kMaxBuckets / 4));
-    if constexpr (std::is_integral_v<Key>) {
-      shift_ = static_cast<int>(std::bit_width(width)) - 1;
-      width = Key{1} << shift_;
-    } else {
-      per_width_ = 1 / width;
-    }
+    shift_ = static_cast<int>(std::bit_width(width)) - 1;
+    width = Key{1} << shift_;
     const auto needed = static_cast<std::size_t>(span / width) + 3;
     if (buckets_.size() < needed) {
       buckets_.resize(std::bit_ceil(needed));
@@ -45,17 +40,10 @@ class BucketQueue {
   bool empty() const { return size_ == 0; }
 
   /// No entry left is below this.
-  Key floor() const {
-    if constexpr (std::is_integral_v<Key>) {
-      return first_ + (static_cast<Key>(current_) << shift_);
-    } else {
-      return first_ + static_cast<Key>(current_) / per_width_;
-    }
-  }
+  Key floor() const { return first_ + (static_cast<Key>(current_) << shift_); }
 
   void Push(Key key, const Entry& entry) {
-    // A rounded key may fall short of the current bucket by a hair.
-    const std::uint64_t bucket = std::max(current_, BucketOf(key));
+    const std::uint64_t bucket = std::uint64_t{key - first_} >> shift_;
     buckets_[bucket & (buckets_.size() - 1)].push_back(entry);
     ++size_;
   }
@@ -76,18 +64,9 @@ class BucketQueue {
  private:
   static constexpr std::size_t kMaxBuckets = 1 << 16;
 
-  std::uint64_t BucketOf(Key key) const {
-    if constexpr (std::is_integral_v<Key>) {
-      return std::uint64_t{key - first_} >> shift_;
-    } else {
-      return static_cast<std::uint64_t>((key - first_) * per_width_);
-    }
-  }
-
   std::vector<std::vector<Entry>> buckets_;
   Key first_{};
-  int shift_ = 0;         // Of integer keys: a bucket is 2^shift wide.
-  double per_width_ = 0;  // Of others: 1 / width.
+  int shift_ = 0;  // A bucket is 2^shift wide.
   std::uint64_t current_ = 0;
   std::size_t size_ = 0;
 };

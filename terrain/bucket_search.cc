@@ -51,6 +51,23 @@ constexpr StepSets kNaturalSteps = [] {
   return sets;
 }();
 
+// The labels of a search, for its path to be read from.
+template <typename Key>
+class LabelsOfPaths {
+ public:
+  // `mark`: above every key of this search, below those of the searches before.
+  LabelsOfPaths(SearchLabels<Key>& labels, Key mark)
+      : labels_(labels), mark_(mark) {}
+
+  Key At(std::size_t index) const { return labels_.At(index); }
+  bool IsMarked(std::size_t index) const { return labels_.At(index) == mark_; }
+  void Mark(std::size_t index) { labels_.Set(index, mark_); }
+
+ private:
+  SearchLabels<Key>& labels_;
+  Key mark_;
+};
+
 }  // namespace
 
 template <typename Keys>
@@ -94,6 +111,9 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
     const Key total = key + task.to_goal(cell.x, cell.y);
     if (total >= task.bound) {
       task.attempt.beyond_keys = task.bounded_by_keys;
+      if (total == task.bound) {
+        as_good_.emplace_back(key, cell.x, cell.y, d);
+      }
       continue;
     }
     Push(next, total, Entry(key, cell.x, cell.y, d));
@@ -103,8 +123,26 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
     if (cell == task.goal) {
       task.attempt.found = true;
       task.bound = key;
+      as_good_.clear();
     }
   }
+}
+
+// Cells whose total is the goal's key are where the search may have stopped:
+// they were dropped, or taken out of the last bucket.
+template <typename Keys>
+CellPath BucketSearch<Keys>::ReadPath(const TerrainMap& map, const Task& task,
+                                      Cell start, Key mark) {
+  LabelsOfPaths<Key> labels(labels_, mark);
+  PathExtraction path(map, task.keys, start, task.goal, labels);
+  for (const std::vector<Entry>* entries : {&taken_, &as_good_}) {
+    for (const Entry& entry : *entries) {
+      if (entry.key + task.to_goal(entry.x(), entry.y()) == task.bound) {
+        path.AddSource({{entry.x(), entry.y()}, entry.key});
+      }
+    }
+  }
+  return path.Run();
 }
 
 template <typename Keys>
@@ -125,8 +163,18 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   queue_.Reset(least, keys.min_straight() / 4, 2 * keys.max_diagonal());
   Push(map.cost_grid().Index(start), least,
        Entry(origin, start.x, start.y, kNoArrival));
-  while (!queue_.empty() && queue_.floor() < task.bound) {
+  as_good_.clear();
+  taken_.clear();
+  for (Key floor = queue_.floor(); !queue_.empty();) {
     const Entry entry = queue_.Pop();
+    if (queue_.floor() > task.bound) {
+      break;
+    }
+    if (queue_.floor() != floor) {
+      floor = queue_.floor();
+      taken_.clear();
+    }
+    taken_.push_back(entry);
     const Cell cell{entry.x(), entry.y()};
     const std::size_t index = map.cost_grid().Index(cell);
     const bool improved_since = labels_.At(index) != entry.key;
@@ -138,16 +186,16 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   }
   if (attempt.found) {
     attempt.beyond_keys = false;
-    attempt.cells = ExtractPath(map, keys, start, goal, [this](std::size_t i) {
-      return labels_.At(i);
-    });
+    attempt.cells = ReadPath(map, task, start, origin + Keys::kNone);
   }
   return attempt;
 }
 
 static_assert(WideKeys::kNone >> SearchLabels<WideKeys::Key>::kKeyBits == 0);
+static_assert(RoundedKeys::kNone >> SearchLabels<RoundedKeys::Key>::kKeyBits ==
+              0);
 
 template class BucketSearch<WideKeys>;
-template class BucketSearch<DoubleKeys>;
+template class BucketSearch<RoundedKeys>;
 
 }  // namespace terra

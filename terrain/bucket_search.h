@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "terrain/bucket_queue.h"
 #include "terrain/cell.h"
@@ -23,7 +24,8 @@ class BucketSearch {
  public:
   using Key = typename Keys::Key;
 
-  /// Finds a path of the smallest key below `bound` (at most Keys::kLimit).
+  /// Finds the path (SearchResult::cells) of the smallest key below `bound` (at
+  /// most Keys::kLimit), whatever the bound.
   /// Pre: both ends passable.
   SearchAttempt Run(const TerrainMap& map, const Keys& keys, Cell start,
                     Cell goal, Key bound);
@@ -52,12 +54,16 @@ class BucketSearch {
 
   void Push(std::size_t index, Key total, const Entry& entry);
   void Expand(Task& task, const Entry& entry, std::size_t index);
+  CellPath ReadPath(const TerrainMap& map, const Task& task, Cell start,
+                    Key mark);
 
   SearchLabels<Key> labels_;
   BucketQueue<Key, Entry> queue_;
+  std::vector<Entry> taken_;    // Out of the bucket that is being emptied.
+  std::vector<Entry> as_good_;  // Dropped: their total is the goal's key.
 };
 
 extern template class BucketSearch<WideKeys>;
-extern template class BucketSearch<DoubleKeys>;
+extern template class BucketSearch<RoundedKeys>;
 
 }  // namespace terra

@@ -10,8 +10,9 @@
 
 namespace terra {
 
-/// The costs of a map's cells inside a border of blocked ones: what the searches
-/// on all cells read, so that they need no bounds check for a single step.
+/// The costs of a map's cells inside a border of blocked ones: what the
+/// searches on all cells read, so that they need no bounds check for a single
+/// step.
 ///
 /// Each cell is 16 bits. The low 15 are its cost code, 0 where it is blocked:
 /// the cost in exact units (CostTable::units) when holds_units(), else the cost
@@ -39,6 +40,12 @@ class CostGrid {
     return static_cast<std::size_t>(c.y + 1) *
                static_cast<std::size_t>(stride_) +
            static_cast<std::size_t>(c.x + kBorder);
+  }
+  /// The cell of an index; outside the map for those of the border.
+  Cell CellAt(std::size_t index) const {
+    const auto stride = static_cast<std::size_t>(stride_);
+    return {static_cast<int>(index % stride) - kBorder,
+            static_cast<int>(index / stride) - 1};
   }
 
   bool holds_units() const { return holds_units_; }

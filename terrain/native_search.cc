@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <numbers>
 #include <utility>
 
 #include "terrain/bucket_search.h"
@@ -47,14 +49,21 @@ bool HoldMap(const TerrainMap& map) {
              static_cast<double>(Keys::kNone);
 }
 
-// Whether a search with these keys is worth starting. A known route's cost
-// settles it; without one they are tried, and wider ones where the search has
-// met paths beyond them.
-template <typename Keys>
-bool MayHoldResult(const Query& query) {
-  return HoldMap<Keys>(query.map) &&
+// Whether a sweep is worth starting. A known route's cost settles it; without
+// one narrow keys are tried, and wider ones where the sweep has met paths
+// beyond them. (Wide keys find the path that narrow ones find. Rounded keys may
+// find another, so wide ones are always tried first, whatever the bound.)
+bool NarrowKeysMayHoldResult(const Query& query) {
+  return HoldMap<NarrowKeys>(query.map) &&
          (query.bound == kImpassable ||
-          Keys(query.map).KeyAbove(query.bound) < Keys::kLimit);
+          NarrowKeys(query.map).KeyAbove(query.bound) < NarrowKeys::kLimit);
+}
+
+double OctileCost(const Query& query) {
+  const int dx = std::abs(query.start.x - query.goal.x);
+  const int dy = std::abs(query.start.y - query.goal.y);
+  return query.map.costs().min_cost() *
+         (std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy));
 }
 
 // Wide vectors sweep a map in less time than A* takes in all but the easiest
@@ -70,10 +79,8 @@ bool PreferSweep(const Query& query) {
     return true;
   }
   constexpr double kNear = 1.35;
-  const double octile = OctileBound<DoubleKeys>(
-      DoubleKeys(query.map), query.goal)(query.start.x, query.start.y);
   return query.options.upper_bound != kImpassable &&
-         query.options.upper_bound > kNear * octile;
+         query.options.upper_bound > kNear * OctileCost(query);
 }
 
 }  // namespace
@@ -81,7 +88,7 @@ bool PreferSweep(const Query& query) {
 struct NativeSearcher::Workspace {
   SweepSearch sweep;
   BucketSearch<WideKeys> wide;
-  BucketSearch<DoubleKeys> doubles;
+  BucketSearch<RoundedKeys> rounded;
 
   SearchAttempt Sweep(const Query& query) {
     const NarrowKeys keys(query.map);
@@ -90,8 +97,8 @@ struct NativeSearcher::Workspace {
   }
 
   template <typename Keys>
-  static SearchAttempt Attempt(BucketSearch<Keys>& search, const Query& query) {
-    const Keys keys(query.map);
+  static SearchAttempt Attempt(BucketSearch<Keys>& search, const Keys& keys,
+                               const Query& query) {
     return search.Run(query.map, keys, query.start, query.goal,
                       keys.KeyAbove(query.bound));
   }
@@ -125,15 +132,17 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
     last = std::move(next);
   };
   if (options.keys == KeyWidth::kNarrow && PreferSweep(query) &&
-      MayHoldResult<NarrowKeys>(query)) {
+      NarrowKeysMayHoldResult(query)) {
     attempt(workspace_->Sweep(query));
   }
-  if (last.beyond_keys && options.keys != KeyWidth::kDouble &&
-      MayHoldResult<WideKeys>(query)) {
-    attempt(Workspace::Attempt(workspace_->wide, query));
+  if (last.beyond_keys && options.keys != KeyWidth::kRounded &&
+      HoldMap<WideKeys>(map)) {
+    attempt(Workspace::Attempt(workspace_->wide, WideKeys(map), query));
   }
-  if (last.beyond_keys) {
-    attempt(Workspace::Attempt(workspace_->doubles, query));
+  const int num_levels = RoundedKeys::NumLevels(map);
+  for (int level = 0; last.beyond_keys && level < num_levels; ++level) {
+    attempt(Workspace::Attempt(workspace_->rounded, RoundedKeys(map, level),
+                               query));
   }
   const double cost =
       last.found ? WalkRoute(map, last.cells).cost : kImpassable;
@@ -150,7 +159,7 @@ SearchResult NativeSearcher::Search(const TerrainMap& map, Cell start,
 
 std::size_t NativeSearcher::bytes() const {
   return workspace_->sweep.bytes() + workspace_->wide.bytes() +
-         workspace_->doubles.bytes();
+         workspace_->rounded.bytes();
 }
 
 SearchResult NativeSearch(const TerrainMap& map, Cell start, Cell goal,

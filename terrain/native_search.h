@@ -8,7 +8,7 @@
 
 namespace terra {
 
-/// How paths are found. All ways find the same costs.
+/// How paths are found. All ways find the same path.
 enum class SearchMethod {
   kAutomatic,  ///< Whichever is expected to be faster.
   kBuckets,    ///< A* with a bucket queue (bucket_search.h).
@@ -19,7 +19,7 @@ enum class SearchMethod {
 /// The smallest keys (search_keys.h) that a search may add up, narrow ones in
 /// sweeps alone; it takes wider ones by itself where these do not hold the
 /// result.
-enum class KeyWidth { kNarrow, kWide, kDouble };
+enum class KeyWidth { kNarrow, kWide, kRounded };
 
 /// What a native search may be told.
 struct NativeSearchOptions {
@@ -40,9 +40,13 @@ struct NativeSearchOptions {
 /// the same memory.
 ///
 /// Under the paper's cost model (corner cutting on) a path's cost is a lower
-/// bound of every feasible route. Where CostGrid::holds_units() costs are
-/// compared exactly; otherwise in doubles, so that paths of equal cost may be
-/// told apart by rounding.
+/// bound of every feasible route. The path depends on the map, the ends and the
+/// tie rule (SearchResult::cells) alone: not on the options, on the processor,
+/// or on searches before.
+///
+/// Where CostGrid::holds_units() costs are compared exactly; otherwise each
+/// kind of step is rounded once (RoundedKeys), so that paths whose costs differ
+/// by less than 1e-12 of them may change places, everywhere in the same way.
 ///
 /// Threads: one search at a time each.
 class NativeSearcher {

@@ -1,52 +1,156 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "terrain/cell.h"
 #include "terrain/map.h"
 #include "terrain/require.h"
+#include "terrain/search_keys.h"
 #include "terrain/search_steps.h"
 
 namespace terra {
 
-/// Reads the path to the goal back out of the keys a search has left: each
-/// cell's predecessor is a neighbour over which its key is not exceeded, if
-/// possible the one straight ahead, so that paths have few corners.
+/// Reads the path out of the keys that a search has left, by the one tie rule
+/// of all searches on the raster (SearchResult::cells): from the goal back, of
+/// the neighbours over which a cheapest path leads to the cell, the one
+/// straight ahead, else the first clockwise from there; from the goal,
+/// clockwise from east.
 ///
-/// key_of(index) is the key of a cell of the CostGrid, at least Keys::kLimit
-/// where it has none. A labelled cell other than the start was labelled from a
-/// neighbour whose key can only have fallen since. So there is a predecessor,
-/// the steps of the path sum up to the goal's key at most, and as keys fall on
-/// the way it ends at the start. Keys of which that is not true are a caller's
-/// bug and end it too.
-template <typename Keys, typename KeyOf>
-CellPath ExtractPath(const TerrainMap& map, const Keys& keys, Cell start,
-                     Cell goal, const KeyOf& key_of) {
+/// The rule speaks of all cheapest paths, so the cells of all of them must have
+/// their final key, but for those whose key and octile bound to the goal add up
+/// to the goal's key. From such a cell on, the path crosses nothing but the
+/// cheapest ground and leads straight to the goal; it can be walked back
+/// without labels. A search that leaves out such cells names others of their
+/// kind, the sources, so that each of them lies on an octile path from a source
+/// to the goal. Where a walk without labels comes to no labelled cell it is
+/// taken back, and what it saw is marked, so that no cell is looked at twice.
+///
+/// Labels has the keys by the index of cells in the CostGrid:
+///   Key At(index)          the cell's key; at least kLimit where it has none;
+///   bool IsMarked(index),
+///   void Mark(index)       for cells without a final key.
+/// Keys of which all this is not true are a caller's bug and end in an error.
+template <typename Keys, typename Labels>
+class PathExtraction {
+ public:
   using Key = typename Keys::Key;
-  const GridSteps grid(map);
-  CellPath path = {goal};
-  std::size_t ahead = 0;
-  while (path.back() != start) {
-    const std::size_t index = map.cost_grid().Index(path.back());
-    const Key key = key_of(index);
-    const Key straight = keys.Straight(grid.Code(index));
-    const Key diagonal = keys.Diagonal(grid.Code(index));
-    const auto leads_here = [&](std::size_t d) {
-      const Key before = key_of(grid.Neighbour(index, d));
-      return before < key &&
-             before + (d % 2 == 0 ? straight : diagonal) <= key &&
-             grid.MayPassCorner(index, d);
+  struct Source {
+    Cell cell;
+    Key key;
+  };
+
+  PathExtraction(const TerrainMap& map, const Keys& keys, Cell start, Cell goal,
+                 Labels& labels)
+      : map_(map),
+        keys_(keys),
+        grid_(map),
+        to_goal_(keys, goal),
+        start_(start),
+        goal_(goal),
+        labels_(labels),
+        total_(labels.At(map.cost_grid().Index(goal))) {}
+
+  /// Without sources no cell may lack its key.
+  void AddSource(const Source& source) {
+    const auto covers = [&](const Source& known) {
+      return Covers(known, source.cell, source.key);
     };
-    std::size_t turns = 0;
-    while (!leads_here(ahead)) {
-      TERRA_REQUIRE(++turns < kSteps.size());
-      ahead = (ahead + 1) % kSteps.size();
+    if (std::none_of(sources_.begin(), sources_.end(), covers)) {
+      sources_.push_back(source);
     }
-    const Cell from = path.back();
-    path.push_back(Cell{from.x + kSteps[ahead].x, from.y + kSteps[ahead].y});
   }
-  std::reverse(path.begin(), path.end());
-  return path;
-}
+
+  CellPath Run() {
+    Stand at{goal_, map_.cost_grid().Index(goal_), total_, 0, 0};
+    while (at.cell != start_) {
+      if (const auto before = Next(at)) {
+        path_.push_back(at);
+        at = *before;
+      } else {
+        // Nothing leads here: the cell was tried without a label.
+        TERRA_REQUIRE(!path_.empty());
+        labels_.Mark(at.index);
+        at = path_.back();
+        path_.pop_back();
+        ++at.turns;
+      }
+    }
+    CellPath cells = {start_};
+    for (auto stand = path_.rbegin(); stand != path_.rend(); ++stand) {
+      cells.push_back(stand->cell);
+    }
+    return cells;
+  }
+
+ private:
+  // A cell of the path, on the way back from the goal.
+  struct Stand {
+    Cell cell;
+    std::size_t index;
+    Key key;
+    std::uint8_t ahead;  // The step that led here.
+    std::uint8_t turns;  // From there to the step that is to be tried next.
+  };
+
+  // The next cell on the way back; none when all steps have been tried.
+  std::optional<Stand> Next(Stand& at) const {
+    const std::uint16_t code = grid_.Code(at.index);
+    const Key straight = keys_.Straight(code);
+    const Key diagonal = keys_.Diagonal(code);
+    const Key to_goal = to_goal_(at.cell.x, at.cell.y);
+    const bool may_lack_labels =
+        !sources_.empty() && at.key + to_goal == total_;
+    for (; at.turns < kSteps.size(); ++at.turns) {
+      const std::size_t d = (at.ahead + at.turns) % kSteps.size();
+      const std::size_t index = grid_.Neighbour(at.index, d);
+      const Key step = d % 2 == 0 ? straight : diagonal;
+      const Key label = labels_.At(index);
+      const bool leads_here = label < at.key && label + step == at.key;
+      if (!leads_here && !may_lack_labels) continue;
+      const Cell cell{at.cell.x + kSteps[d].x, at.cell.y + kSteps[d].y};
+      if ((leads_here || MayLeadHere(cell, index, step, at, to_goal)) &&
+          grid_.MayPassCorner(at.index, d)) {
+        return Stand{cell, index, at.key - step, static_cast<std::uint8_t>(d),
+                     0};
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Whether a neighbour without a final key may be on a cheapest path, as far
+  // as its place tells: the octile bound must be what the way on costs, and
+  // what the way from a source costs.
+  bool MayLeadHere(Cell cell, std::size_t index, Key step, const Stand& at,
+                   Key to_goal) const {
+    return grid_.Code(index) != 0 && !labels_.IsMarked(index) &&
+           to_goal_(cell.x, cell.y) == to_goal + step &&
+           std::any_of(sources_.begin(), sources_.end(),
+                       [&](const Source& source) {
+                         return Covers(source, cell, at.key - step);
+                       });
+  }
+
+  // Whether an octile path from the source gives a cell this key.
+  bool Covers(const Source& source, Cell cell, Key key) const {
+    return source.key +
+               OctileBound<Keys>(keys_, cell)(source.cell.x, source.cell.y) ==
+           key;
+  }
+
+  const TerrainMap& map_;
+  const Keys& keys_;
+  const GridSteps grid_;
+  const OctileBound<Keys> to_goal_;
+  const Cell start_;
+  const Cell goal_;
+  Labels& labels_;
+  const Key total_;
+  std::vector<Source> sources_;
+  std::vector<Stand> path_;
+};
 
 }  // namespace terra

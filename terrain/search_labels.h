@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,13 +11,13 @@ namespace terra {
 /// The keys of the best paths found to the cells of a map, kept between
 /// searches without clearing.
 ///
-/// Integers: the keys of a search start at its origin, which lies below all
-/// labels of the searches before it. So what those have left needs no mark to
-/// be told by; it is above any key that this search can reach. Keys have
-/// kKeyBits of the integer, the rest counts the searches down; when none is
-/// left, after 255 of them, the labels are cleared.
+/// The keys of a search start at its origin, which lies below all labels of the
+/// searches before it. So what those have left needs no mark to be told by; it
+/// is above any key that this search can reach. Keys have kKeyBits of the
+/// integer, the rest counts the searches down; when none is left, after 255 of
+/// them, the labels are cleared.
 /// Threads: one search at a time.
-template <typename Key>
+template <std::unsigned_integral Key>
 class SearchLabels {
  public:
   static constexpr int kKeyBits = std::numeric_limits<Key>::digits - 8;
@@ -47,43 +48,6 @@ class SearchLabels {
 
   std::vector<Key> labels_;
   Key origin_ = 0;
-};
-
-/// Doubles have no bits to spare: labels carry the number of their search.
-template <>
-class SearchLabels<double> {
- public:
-  double Begin(std::size_t num_cells) {
-    ++search_;
-    if (labels_.size() < num_cells || search_ == 0) {
-      labels_.assign(num_cells, Label{0, 0});
-      search_ = 1;
-    }
-    return 0;
-  }
-
-  double At(std::size_t index) const {
-    return labels_[index].search == search_
-               ? labels_[index].key
-               : std::numeric_limits<double>::infinity();
-  }
-  void Set(std::size_t index, double key) {
-    labels_[index] = Label{key, search_};
-  }
-  void Prefetch(std::size_t index) const {
-    __builtin_prefetch(labels_.data() + index);
-  }
-
-  std::size_t bytes() const { return labels_.capacity() * sizeof(Label); }
-
- private:
-  struct Label {
-    double key;
-    std::uint32_t search;
-  };
-
-  std::vector<Label> labels_;
-  std::uint32_t search_ = 0;
 };
 
 }  // namespace terra

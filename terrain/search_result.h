@@ -22,7 +22,13 @@ struct SearchResult {
   SearchStatus status = SearchStatus::kNoRoute;
   /// kImpassable unless found; equals WalkRoute of the cells.
   double cost = kImpassable;
-  /// The optimal path cell by cell, start to goal; start = goal is one cell.
+  /// A cheapest path cell by cell, start to goal; start = goal is one cell.
+  ///
+  /// Ties: one rule for every search on the raster. The path is chosen from the
+  /// goal back. Of the neighbours over which a cheapest path leads to the cell,
+  /// the one straight ahead is taken, else the first clockwise from there; at
+  /// the goal, the first clockwise from east (to the right, x rising). So there
+  /// are few corners, and the same map gives the same path whatever finds it.
   CellPath cells;
   /// Work done: cells expanded (or visited by a sweep, each visit counted).
   std::int64_t expanded = 0;

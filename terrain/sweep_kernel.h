@@ -103,8 +103,9 @@ class Sweeper {
       Pending(-1, y)[w] |= changed[w];
     }
     const std::uint32_t* row = relaxer_.Row(y);
+    // Paths as cheap as the best stay wanted: the tie rule chooses among all.
     if (y == task_.goal_row && row[task_.goal_column] < task_.bound) {
-      task_.bound = row[task_.goal_column];
+      task_.bound = row[task_.goal_column] + 1;
       task_.found = true;
     }
   }

@@ -43,6 +43,33 @@ bool MayHaveDropped(const SweepTask& task, const NarrowKeys& keys,
          task.bound;
 }
 
+// The keys of a sweep, for its path to be read from. Rows that the sweep did
+// not come to still hold keys of earlier searches. No cell of a cheapest path
+// lacks its key.
+class KeysOfPaths {
+ public:
+  explicit KeysOfPaths(const SweepTask& task)
+      : keys_(task.keys),
+        first_(RowBegin(task, task.first_row)),
+        end_(RowBegin(task, task.last_row + 1)) {}
+
+  Key At(std::size_t index) const {
+    return index >= first_ && index < end_ ? keys_[index] : NarrowKeys::kLimit;
+  }
+  bool IsMarked(std::size_t /*index*/) const { return true; }
+  void Mark(std::size_t /*index*/) {}
+
+ private:
+  static std::size_t RowBegin(const SweepTask& task, int row) {
+    return static_cast<std::size_t>(row) *
+           static_cast<std::size_t>(task.stride);
+  }
+
+  const Key* keys_;
+  std::size_t first_;
+  std::size_t end_;
+};
+
 }  // namespace
 
 InstructionSet BestInstructionSet() {
@@ -75,7 +102,8 @@ SearchAttempt SweepSearch::Run(const TerrainMap& map, const NarrowKeys& keys,
   attempt.expanded = task.visited;
   attempt.passes = task.passes;
   if (task.found) {
-    attempt.cells = ReadPath(map, keys, start, goal, task);
+    KeysOfPaths labels(task);
+    attempt.cells = PathExtraction(map, keys, start, goal, labels).Run();
   } else if (bound == NarrowKeys::kLimit) {
     attempt.beyond_keys = MayHaveDropped(task, keys, to_goal);
   }
@@ -138,19 +166,6 @@ void SweepSearch::FillOctileTables(const TerrainMap& map,
   task.turn_x = turn_x;
   task.along_y = along_y;
   task.turn_y = turn_y;
-}
-
-// Rows that the sweep did not come to still hold keys of earlier searches.
-CellPath SweepSearch::ReadPath(const TerrainMap& map, const NarrowKeys& keys,
-                               Cell start, Cell goal,
-                               const SweepTask& task) const {
-  const auto key_of = [&](std::size_t index) {
-    const auto row =
-        static_cast<int>(index / static_cast<std::size_t>(task.stride));
-    return row >= task.first_row && row <= task.last_row ? keys_[index]
-                                                         : NarrowKeys::kLimit;
-  };
-  return ExtractPath(map, keys, start, goal, key_of);
 }
 
 std::size_t SweepSearch::bytes() const {

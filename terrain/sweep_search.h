@@ -43,8 +43,6 @@ class SweepSearch {
                     Cell goal);
   void FillOctileTables(const TerrainMap& map, const NarrowKeys& keys,
                         Cell goal, SweepTask& task);
-  CellPath ReadPath(const TerrainMap& map, const NarrowKeys& keys, Cell start,
-                    Cell goal, const SweepTask& task) const;
 
   // Not a vector: its elements would be cleared, which takes as long as a
   // search.

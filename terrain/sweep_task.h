@@ -41,7 +41,7 @@ struct SweepTask {
   std::uint64_t* pending = nullptr;
   int words_per_row = 0;  ///< At least stride / kFewestLanes / 64 + 1.
 
-  /// In: paths at or above it are not wanted. Out: the goal's key, if found.
+  /// Paths at or above it are not wanted; falls to one above the goal's key.
   std::uint32_t bound = 0;
   bool found = false;
   int first_row = 0;  ///< Rows in which `keys` was written.

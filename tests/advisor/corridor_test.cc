@@ -12,6 +12,7 @@
 #include "terrain/segment.h"
 #include "tests/advisor/refine_problem.h"
 #include "tests/support/ascii_map.h"
+#include "tests/terrain/ruled_path.h"
 
 namespace terra::advisor {
 namespace {
@@ -20,6 +21,7 @@ using testing::MapFromAscii;
 using testing::Random;
 using testing::RandomRefineProblem;
 using testing::RefineProblem;
+using testing::RuledPath;
 
 bool IsNear(const CellPath& path, Cell c, int distance) {
   return std::any_of(path.begin(), path.end(), [&](Cell at) {
@@ -74,11 +76,12 @@ TEST(CorridorTest, SearchFindsTheOptimumOfTheMapWalledInToTheCorridor) {
                             random.Int(0, 8));
     const Cell start = problem.baseline.front();
     const Cell goal = problem.baseline.back();
-    const SearchResult want =
-        ReferenceSearch(Walled(problem.map, corridor), start, goal);
+    const TerrainMap walled = Walled(problem.map, corridor);
+    const SearchResult want = ReferenceSearch(walled, start, goal);
     const SearchResult got = SearchCorridor(problem.map, corridor, start, goal);
     ASSERT_EQ(got.status, want.status);
     ASSERT_NEAR(got.cost, want.cost, 1e-9 * want.cost);
+    ASSERT_EQ(got.cells, RuledPath(walled, start, goal));
     ASSERT_TRUE(std::all_of(got.cells.begin(), got.cells.end(), [&](Cell c) {
       return corridor.Contains(c);
     }));

@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,6 +38,26 @@ TEST(ParallelFor, AnExceptionEndsTheWorkAndIsThrown) {
                            }),
                std::runtime_error);
   EXPECT_LT(calls, 1'000'000);
+}
+
+// Every other piece fails; the first one is the slowest.
+TEST(ParallelFor, WhichExceptionIsThrownDependsOnNoThread) {
+  std::atomic<int> later_failures{0};
+  const auto work = [&](std::int64_t i) {
+    if (i % 2 == 1) return;
+    if (i == 0) {
+      while (later_failures == 0) std::this_thread::yield();
+    } else {
+      ++later_failures;
+    }
+    throw std::runtime_error(std::to_string(i));
+  };
+  try {
+    ParallelFor(1000, 4, work);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "0");
+  }
 }
 
 TEST(FormatDuration, NamesTheTwoLargestUnits) {

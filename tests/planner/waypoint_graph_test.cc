@@ -43,7 +43,22 @@ WaypointGraph LatticeGraph(const TerrainMap& map, int stride) {
   return WaypointGraph(std::move(nodes), edges);
 }
 
-TEST(WaypointGraphTest, OfALatticeCostsWhatTheLatticePlannerFinds) {
+// The same graph with its nodes and edges in another order.
+WaypointGraph Reversed(const WaypointGraph& graph) {
+  std::vector<WaypointGraph::Node> nodes(graph.nodes().rbegin(),
+                                         graph.nodes().rend());
+  std::vector<WaypointGraph::Edge> edges;
+  const std::size_t last = nodes.size() - 1;
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    for (const std::size_t b : graph.Neighbours(a)) {
+      if (a < b) edges.emplace_back(last - b, last - a);
+    }
+  }
+  return WaypointGraph(std::move(nodes), edges);
+}
+
+// Cell for cell, by the lattice's tie rule, whatever the order of the nodes.
+TEST(WaypointGraphTest, OfALatticeIsTheRouteOfTheLatticePlanner) {
   Random random(1);
   int found = 0;
   for (int i = 0; i < 300; ++i) {
@@ -58,12 +73,18 @@ TEST(WaypointGraphTest, OfALatticeCostsWhatTheLatticePlannerFinds) {
     const int stride = random.Int(1, 20);
     const LatticePlan want =
         PlanOnLattice(map, start, goal, {.stride = stride});
-    const LatticePlan got =
-        PlanOnGraph(map, LatticeGraph(map, stride), start, goal, 2 * stride);
+    const WaypointGraph graph = LatticeGraph(map, stride);
+    const LatticePlan got = PlanOnGraph(map, graph, start, goal, 2 * stride);
+    const LatticePlan reversed =
+        PlanOnGraph(map, Reversed(graph), start, goal, 2 * stride);
     ASSERT_EQ(got.status, want.status) << "map " << i;
     if (!got.found()) continue;
     ++found;
     ASSERT_NEAR(got.cost, want.cost, 1e-9 * want.cost) << "map " << i;
+    if (start != goal) {
+      ASSERT_EQ(got.waypoints, want.waypoints) << "map " << i;
+    }
+    ASSERT_EQ(reversed.waypoints, got.waypoints) << "map " << i;
     ASSERT_EQ(WalkRoute(map, got.waypoints).cost, got.cost) << "map " << i;
     ASSERT_EQ(got.waypoints.front(), start);
     ASSERT_EQ(got.waypoints.back(), goal);

@@ -1,5 +1,6 @@
 #include "terrain/native_search.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -92,6 +93,55 @@ TEST(NativeSearchTest, FindsTheReferenceCostWithoutExactUnits) {
 // Rows of more blocks than a word has bits, for each width of vectors.
 TEST(NativeSearchTest, FindsTheReferenceCostOnWideMaps) {
   ExpectAgreementOnRandomMaps(6, 60, {2500, 8});
+}
+
+// Ground of one or two costs with a few walls: many paths are equally cheap.
+TerrainMap OpenMap(Random& random, int max_side) {
+  constexpr std::uint8_t kWall = 11;
+  const int width = random.Int(1, max_side);
+  const int height = random.Int(1, max_side);
+  const auto other_ground = static_cast<std::uint8_t>(random.Int(0, 2));
+  ByteRaster ids = ByteRaster::Zero(height, width);
+  for (int i = random.Int(0, 8); i > 0; --i) {
+    const int x = random.Int(0, width - 1);
+    const int y = random.Int(0, height - 1);
+    const int w = random.OneIn(2) ? 1 : random.Int(1, width / 3 + 1);
+    const int h = random.OneIn(2) ? 1 : random.Int(1, height / 3 + 1);
+    ids.block(y, x, std::min(h, height - y), std::min(w, width - x))
+        .setConstant(random.OneIn(3) ? other_ground : kWall);
+  }
+  return TerrainMap::Create(std::move(ids), MultiTerraPathLegend(),
+                            RandomCostModel(random))
+      .value();
+}
+
+// AllWaysAgree compares cell for cell.
+TEST(NativeSearchTest, EachWayTakesThePathOfTheTieRuleOnOpenMaps) {
+  Random random(10);
+  for (int i = 0; i < 3000; ++i) {
+    TerrainMap map = OpenMap(random, i % 10 == 0 ? 120 : 30);
+    if (!HasPassableCell(map)) continue;
+    if (random.OneIn(4)) map = WithRandomCosts(random, map, 3, 0.0123456789);
+    ASSERT_TRUE(AllWaysAgree(map, RandomPassableCell(random, map),
+                             RandomPassableCell(random, map)))
+        << "map " << i;
+  }
+}
+
+// From the goal back: west while that is on a cheapest path, then the first
+// step clockwise from west.
+TEST(NativeSearchTest, TakesFromTheGoalBackTheStepStraightAheadIfItCan) {
+  const TerrainMap map =
+      TerrainMap::Create(ByteRaster::Zero(6, 9), MultiTerraPathLegend())
+          .value();
+  const CellPath want = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 3}, {5, 3}};
+  const CellPath back = {{5, 3}, {4, 2}, {3, 1}, {2, 0}, {1, 0}, {0, 0}};
+  for (const SearchWay& way : AllSearchWays()) {
+    EXPECT_EQ(NativeSearch(map, {0, 0}, {5, 3}, way.options).cells, want)
+        << way.name;
+    EXPECT_EQ(NativeSearch(map, {5, 3}, {0, 0}, way.options).cells, back)
+        << way.name;
+  }
 }
 
 // By less than narrow keys can tell.

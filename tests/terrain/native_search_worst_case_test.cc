@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "benchmark/map_generator.h"
 #include "benchmark/worst_case_maps.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/native_search.h"
@@ -78,6 +79,17 @@ TEST(NativeSearchWorstCaseTest, AgreesThatAClosedRoomCannotBeReached) {
 TEST(NativeSearchWorstCaseTest, AgreesWhereEveryCellCostsSomethingElse) {
   const WorstCase c = NoiseOfCosts(400, 5);
   EXPECT_TRUE(AllWaysAgree(MapOf(c), c.start, c.goal));
+}
+
+TEST(NativeSearchWorstCaseTest, AgreesOnGeneratedMaps) {
+  using benchmark::Subset;
+  for (const Subset subset : {Subset::kEasy, Subset::kHard}) {
+    for (int i = 0; i < 8; ++i) {
+      const benchmark::GeneratedCase drawn = benchmark::GenerateCase(
+          subset, 5, i, benchmark::CalibratedParameters(subset));
+      EXPECT_TRUE(AllWaysAgree(drawn.map, drawn.start, drawn.goal)) << i;
+    }
+  }
 }
 
 TEST(NativeSearchWorstCaseTest, AKnownCostBeyondNarrowKeysSkipsThem) {

@@ -6,6 +6,7 @@
 #include "terrain/reference_search.h"
 #include "terrain/route_cost.h"
 #include "terrain/search_keys.h"
+#include "tests/terrain/ruled_path.h"
 
 namespace terra::testing {
 
@@ -22,7 +23,8 @@ bool NarrowKeysHoldAllPaths(const TerrainMap& map) {
 
 // What is wrong with an answer; empty if nothing.
 std::string Fault(const TerrainMap& map, const SearchWay& way,
-                  const SearchResult& got, const SearchResult& want) {
+                  const SearchResult& got, const SearchResult& want,
+                  const CellPath& ruled) {
   if (got.status != want.status) return "another status";
   const bool swept = got.passes > 0;
   if (way.options.method == SearchMethod::kBuckets && swept) {
@@ -37,15 +39,7 @@ std::string Fault(const TerrainMap& map, const SearchWay& way,
   // Exact units leave no room for another cost.
   const double tolerance = map.costs().scale != 0 ? 0 : 1e-12 * want.cost;
   if (std::abs(got.cost - want.cost) > tolerance) return "other cost";
-  if (got.cells.front() != want.cells.front() ||
-      got.cells.back() != want.cells.back()) {
-    return "other ends";
-  }
-  for (std::size_t i = 1; i < got.cells.size(); ++i) {
-    if (ChebyshevDistance(got.cells[i - 1], got.cells[i]) != 1) {
-      return "not a path";
-    }
-  }
+  if (got.cells != ruled) return "another path than the tie rule names";
   const RouteWalk walk = WalkRoute(map, got.cells);
   const bool as_ruled = walk.feasible() && walk.cost == got.cost;
   return as_ruled ? "" : "not what the cost rule says";
@@ -56,8 +50,8 @@ std::string Fault(const TerrainMap& map, const SearchWay& way,
 std::vector<SearchWay> AllSearchWays() {
   std::vector<SearchWay> ways = {
       {"buckets, integers", {.method = SearchMethod::kBuckets}},
-      {"buckets, doubles",
-       {.method = SearchMethod::kBuckets, .keys = KeyWidth::kDouble}}};
+      {"buckets, rounded",
+       {.method = SearchMethod::kBuckets, .keys = KeyWidth::kRounded}}};
   for (const auto& [set, name] :
        {std::pair{InstructionSet::kPortable, "portable"},
         std::pair{InstructionSet::kAvx2, "AVX2"},
@@ -76,12 +70,14 @@ std::vector<SearchWay> AllSearchWays() {
 ::testing::AssertionResult AllWaysAgree(const TerrainMap& map, Cell start,
                                         Cell goal) {
   const SearchResult want = ReferenceSearch(map, start, goal);
+  const CellPath ruled =
+      want.found() ? RuledPath(map, start, goal) : CellPath();
   for (SearchWay way : AllSearchWays()) {
     // As without a baseline, with the best one, and with a usual one.
     for (const double bound : {kImpassable, want.cost, 1.2 * want.cost}) {
       way.options.upper_bound = bound;
       const SearchResult got = NativeSearch(map, start, goal, way.options);
-      const std::string fault = Fault(map, way, got, want);
+      const std::string fault = Fault(map, way, got, want, ruled);
       if (!fault.empty()) {
         return ::testing::AssertionFailure()
                << way.name << ", upper bound " << bound << ": " << fault << ", "

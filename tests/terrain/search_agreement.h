@@ -20,8 +20,8 @@ struct SearchWay {
 std::vector<SearchWay> AllSearchWays();
 
 /// Says whether every way, without an upper bound, with the optimum as one and
-/// with a dearer one, finds what ReferenceSearch finds: the same cost, on a
-/// path of single steps that the cost rule accepts at that cost. A way that
+/// with a dearer one, finds what ReferenceSearch finds, the same cost, on the
+/// path that the tie rule names (RuledPath), cell for cell. A way that
 /// does not use the method it is to use has failed too.
 ::testing::AssertionResult AllWaysAgree(const TerrainMap& map, Cell start,
                                         Cell goal);

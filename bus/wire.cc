@@ -93,12 +93,6 @@ bool IsLineLayout(char32_t code) {
   return code == '\t' || code == '\n' || code == '\r';
 }
 
-// What ends a string, steers a terminal or cannot be shown: C0, DEL and C1.
-bool IsControl(char32_t code) {
-  const bool control = code < 0x20 || (code >= 0x7F && code < 0xA0);
-  return control && !IsLineLayout(code);
-}
-
 bool SkipField(Walker& walker, const Field& field, std::size_t count) {
   if (field.kind != 's') return walker.Skip(count, FieldSize(field.kind));
   for (std::size_t i = 0; i < count; ++i) {
@@ -144,9 +138,11 @@ std::string CleanText(std::string_view text, std::size_t max_bytes) {
   std::string clean;
   for (std::size_t at = 0; at < text.size();) {
     const Utf8Character character = ReadUtf8(text, at);
-    const std::string_view kept = !character.valid || IsControl(character.code)
-                                      ? kReplacement
-                                      : text.substr(at, character.bytes);
+    const std::string_view kept =
+        !character.valid ||
+                (IsControl(character.code) && !IsLineLayout(character.code))
+            ? kReplacement
+            : text.substr(at, character.bytes);
     if (clean.size() + kept.size() > max_bytes) break;
     clean += kept;
     at += character.bytes;

@@ -20,6 +20,12 @@ struct Utf8Character {
 /// Source: RFC 3629.
 Utf8Character ReadUtf8(std::string_view text, std::size_t at);
 
+/// Is it a control character: C0, DEL or C1? They end strings, steer terminals,
+/// or cannot be shown.
+constexpr bool IsControl(char32_t code) {
+  return code < 0x20 || (code >= 0x7F && code < 0xA0);
+}
+
 /// Is every character of the text valid?
 bool IsUtf8(std::string_view text);
 

@@ -20,7 +20,7 @@ TEST(Utf8Test, ReadsCharactersOfEveryLength) {
         Case{"\xf0\x90\x80\x80", 0x10000},
         Case{"\xf4\x8f\xbf\xbf", 0x10FFFF}}) {
     const Utf8Character read = ReadUtf8(tested.text, 0);
-    EXPECT_TRUE(read.valid) << std::hex << tested.code;
+    EXPECT_TRUE(read.valid) << testing::PrintToString(tested.text);
     EXPECT_EQ(read.code, tested.code);
     EXPECT_EQ(read.bytes, tested.text.size());
     EXPECT_TRUE(IsUtf8(tested.text));

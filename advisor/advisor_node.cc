@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "advisor/advice_codec.h"
 #include "bus/codec.h"
 #include "terrain/route_cost.h"
 
@@ -22,38 +23,6 @@ constexpr bus::Duration kAgainAfter = std::chrono::seconds(1);
 
 double Seconds(bus::Duration duration) {
   return std::chrono::duration<double>(duration).count();
-}
-
-// Cuts text to what its message may carry.
-std::string Limited(std::string text, std::size_t max_bytes) {
-  if (text.size() > max_bytes) text.resize(max_bytes);
-  return text;
-}
-
-advice_t ToMessage(const AdviceWorker::Job& job, const AdviceAnswer& answer) {
-  advice_t message{};
-  message.request_id = job.request_id;
-  message.map_id = job.map_id;
-  message.baseline_digest = job.baseline_digest;
-  message.anchor_session = job.anchor.session;
-  message.anchor_route_seq = job.anchor.route_seq;
-  message.anchor_index = job.anchor.index;
-  message.anchor_x = job.anchor.cell.x;
-  message.anchor_y = job.anchor.cell.y;
-  // Nobody who reads a log may take it for a model's answer.
-  message.model = Limited((answer.simulated ? "SIMULATED " : "") + answer.model,
-                          bus::kMaxNameBytes);
-  message.kind = static_cast<std::int8_t>(answer.kind);
-  message.form = static_cast<std::int8_t>(answer.form);
-  message.request_hash = answer.request_hash;
-  message.answer_text = Limited(answer.answer_text, bus::kMaxAnswerBytes);
-  message.tokens_in = answer.tokens_in;
-  message.tokens_out = answer.tokens_out;
-  message.spend_usd = answer.spend_usd;
-  message.t_prep_us = answer.t_prep_us;
-  message.t_llm_us = answer.t_llm_us;
-  message.advice_error = Limited(answer.error, 1'000);
-  return message;
 }
 
 }  // namespace
@@ -184,29 +153,10 @@ void AdvisorNode::Publish(const AdviceWorker::Done& done, bus::Time now) {
   answer_time_.Add(Seconds(now - began_));
   if (done.answer.kind == AnswerKind::kFailed) ++failures_;
   if (!done.answer.error.empty()) last_error_ = done.answer.error;
-  current_.clear();
-  const std::size_t num_messages =
-      std::max<std::size_t>(1, done.answer.candidates.size());
-  for (std::size_t i = 0; i < num_messages; ++i) {
-    advice_t message = ToMessage(done.job, done.answer);
-    message.advisor = name_;
-    message.method = worker_.backend().method();
-    message.backend = worker_.backend().name();
-    message.attempt = done.job.number;
-    message.candidate = static_cast<std::int32_t>(i) + 1;
-    if (i < done.answer.candidates.size()) {
-      const Candidate& candidate = done.answer.candidates[i];
-      message.polished = candidate.polished ? 1 : 0;
-      if (candidate.route.size() > bus::kMaxWaypoints) {
-        message.kind = advice_t::KIND_MALFORMED;
-        message.advice_error = "more than 2048 waypoints";
-      } else {
-        bus::SetWaypoints(message, candidate.route);
-      }
-    }
-    advice_.Send(message);
-    current_.push_back(std::move(message));
-  }
+  current_ =
+      ToMessages({name_, worker_.backend().method(), worker_.backend().name()},
+                 done.job, done.answer);
+  for (advice_t& message : current_) advice_.Send(message);
   repeat_.Postpone(now);
 }
 

@@ -8,9 +8,33 @@
 #include "advisor/ascii.h"
 #include "terrain/require.h"
 #include "terrain/route_text.h"
+#include "terrain/utf8.h"
 
 namespace terra::advisor {
 namespace {
+
+/// Every space that Unicode knows besides ASCII's: White_Space, and those of no
+/// width, byte order marks among them.
+bool IsUnicodeSpace(char32_t code) {
+  return code == 0x85 || code == 0xA0 || code == 0x1680 ||
+         (code >= 0x2000 && code <= 0x200B) || code == 0x2028 ||
+         code == 0x2029 || code == 0x202F || code == 0x205F || code == 0x2060 ||
+         code == 0x3000 || code == 0xFEFF;
+}
+
+/// Writes blanks over each of them, as many as it has bytes, so that positions
+/// stay.
+std::string WithAsciiSpaces(std::string_view text) {
+  std::string plain(text);
+  for (std::size_t at = 0; at < text.size();) {
+    const Utf8Character character = ReadUtf8(text, at);
+    if (IsUnicodeSpace(character.code)) {
+      plain.replace(at, character.bytes, character.bytes, ' ');
+    }
+    at += character.bytes;
+  }
+  return plain;
+}
 
 std::string WithoutSpace(std::string_view text) {
   std::string kept;
@@ -153,11 +177,16 @@ Answer Malformed(AnswerFault fault, std::size_t position) {
 
 }  // namespace
 
-Answer ParseAnswer(std::string_view text, const AnswerRules& rules) {
+bool IsBlankAnswer(std::string_view text) {
+  return Trimmed(WithAsciiSpaces(text)).empty();
+}
+
+Answer ParseAnswer(std::string_view answered, const AnswerRules& rules) {
   TERRA_REQUIRE(rules.max_candidates >= 1);
-  if (text.size() > rules.max_bytes) {
+  if (answered.size() > rules.max_bytes) {
     return Malformed(AnswerFault::kTooLong, rules.max_bytes);
   }
+  const std::string text = WithAsciiSpaces(answered);
   if (Trimmed(text).empty()) {
     return Malformed(AnswerFault::kEmpty, 0);
   }

@@ -36,7 +36,7 @@ struct Answer {
 };
 
 /// Reads a model's answer: strict about what it means, tolerant about how it
-/// is written.
+/// is written. White space is what Unicode says it is, spaces of no width too.
 ///
 /// Yes:  after removal of white space, code fences, `*`, quotes and one full
 ///       stop the whole answer must be `yes` in any case; else it is none.
@@ -49,5 +49,8 @@ struct Answer {
 /// Bounded: linear in the answer's length, for any bytes. Threads: reentrant.
 /// Source: paper, LLM-Advisor (prompt); PROTOCOL, Methods.
 Answer ParseAnswer(std::string_view text, const AnswerRules& rules = {});
+
+/// Is there nothing in it but white space, as ParseAnswer reads it?
+bool IsBlankAnswer(std::string_view text);
 
 }  // namespace terra::advisor

@@ -1,4 +1,6 @@
 // Anthropic Messages: POST /v1/messages.
+#include <algorithm>
+
 #include "advisor/wire_format.h"
 #include "advisor/wire_json.h"
 
@@ -64,7 +66,12 @@ class AnthropicFormat : public WireFormat {
         CountOr0(usage, "output_tokens"),
         CountOr0(MemberOf(usage, "output_tokens_details"), "thinking_tokens")};
     // Thinking blocks may come first; only text blocks are the answer.
-    result.text = ContentText(reply.at("content"), {"text"});
+    const json& content = reply.at("content");
+    result.text = ContentText(content, {"text"});
+    result.has_thinking =
+        std::any_of(content.begin(), content.end(), [](const json& block) {
+          return TextOr(block, "type").ends_with("thinking");
+        });
     const std::string stop = TextOr(reply, "stop_reason");
     if (stop == "max_tokens" || stop == "model_context_window_exceeded") {
       result.status = ReplyStatus::kTruncated;

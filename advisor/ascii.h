@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 namespace terra::advisor {
 
 // Characters as every locale has them: what is read must not depend on it.
@@ -15,6 +19,14 @@ inline constexpr char Lower(char c) {
 }
 inline constexpr bool IsLetter(char c) {
   return Lower(c) >= 'a' && Lower(c) <= 'z';
+}
+
+/// In lower case, for what its standard compares without regard to case:
+/// schemes, hosts, header names.
+inline std::string Lowered(std::string_view text) {
+  std::string lowered(text);
+  std::transform(lowered.begin(), lowered.end(), lowered.begin(), Lower);
+  return lowered;
 }
 
 }  // namespace terra::advisor

@@ -142,7 +142,7 @@ Result<BatchResult> ReadBatchResult(const WireFormat& format,
   } catch (const json::exception& error) {
     return Error{ErrorCode::kInvalid, "no line of a results file of " +
                                           std::string(provider) + ": " +
-                                          error.what()};
+                                          JsonFault(error)};
   }
 }
 

@@ -7,18 +7,11 @@ namespace {
 
 using nlohmann::json;
 
-/// Models that think may leave `<think>...</think>` before the answer. An
-/// unclosed one means that the answer never began.
-std::string WithoutThinking(std::string text) {
-  constexpr std::string_view kOpen = "<think>";
-  constexpr std::string_view kClose = "</think>";
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos ||
-      text.compare(first, kOpen.size(), kOpen) != 0) {
-    return text;
-  }
-  const std::size_t close = text.find(kClose, first);
-  return close == std::string::npos ? "" : text.substr(close + kClose.size());
+/// Where servers put what a model thinks.
+bool HasThinking(const json& message) {
+  return !TextOr(message, "reasoning_content").empty() ||
+         !TextOr(message, "reasoning").empty() ||
+         !TextOr(message, "thinking").empty();
 }
 
 class ChatFormat : public WireFormat {
@@ -67,13 +60,27 @@ class ChatFormat : public WireFormat {
                     CountOr0(usage, "completion_tokens"),
                     CountOr0(MemberOf(usage, "completion_tokens_details"),
                              "reasoning_tokens")};
-    const json& choice = reply.at("choices").at(0);
-    const json& message = choice.at("message");
-    result.text =
-        WithoutThinking(ContentText(MemberOf(message, "content"), {"text"}));
+    const json& choices = reply.at("choices");
+    if (choices.is_array() && choices.empty()) {
+      result.error = "no choice in the reply";
+      return result;
+    }
+    const json& choice = choices.at(0);
+    const json& message = MemberOf(choice, "message");
+    if (!message.is_object()) {
+      result.wrong_form = true;
+      result.error = "no message in the reply's choice";
+      return result;
+    }
+    result.text = ContentText(MemberOf(message, "content"), {"text"});
+    result.has_thinking = HasThinking(message);
     const std::string refusal = TextOr(message, "refusal");
     const std::string finish = TextOr(choice, "finish_reason");
-    if (finish == "length") {
+    if (finish == "error") {
+      // Of gateways: what they stand before failed amid its answer.
+      result.error = "the server's model failed (finish_reason error)";
+      result.transient = true;
+    } else if (finish == "length") {
       result.status = ReplyStatus::kTruncated;
       result.error = finish;
     } else if (finish == "content_filter" ||
@@ -89,8 +96,10 @@ class ChatFormat : public WireFormat {
   json JoinEvents(const std::vector<json>& events) const override {
     json reply = json::object();
     std::string text;
+    std::string thought;
     std::string refusal;
     json finish;
+    json failure;
     for (const json& event : events) {
       TakeOver(reply, event);
       const json& choices = MemberOf(event, "choices");
@@ -100,11 +109,17 @@ class ChatFormat : public WireFormat {
       refusal += TextOr(delta, "refusal");
       const json& reason = MemberOf(choices.front(), "finish_reason");
       if (!reason.is_null()) finish = reason;
+      const json& error = MemberOf(choices.front(), "error");
+      if (!error.is_null()) failure = error;
+      thought +=
+          TextOr(delta, "reasoning_content") + TextOr(delta, "reasoning");
     }
-    if (finish.is_null()) return nullptr;
+    if (finish.is_null() && failure.is_null()) return nullptr;
     json message = {{"role", "assistant"}, {"content", text}};
     if (!refusal.empty()) message["refusal"] = refusal;
-    reply["choices"] = {{{"message", message}, {"finish_reason", finish}}};
+    if (!thought.empty()) message["reasoning_content"] = thought;
+    reply["choices"] = {
+        {{"message", message}, {"finish_reason", finish}, {"error", failure}}};
     return reply;
   }
 

@@ -5,11 +5,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <optional>
 #include <utility>
 
+#include "advisor/answer_parser.h"
 #include "advisor/interruptible_wait.h"
 #include "output/output_file.h"
+#include "advisor/thinking.h"
+#include "terrain/utf8.h"
 
 namespace terra::advisor {
 namespace {
@@ -51,11 +55,48 @@ Status WriteQuestion(const fs::path& folder, const LlmRequest& request) {
   return WriteWholeFile((folder / "prompt.txt").string(), request.text);
 }
 
-/// Size of the answer file; none while it is missing or empty.
+/// Size of the answer file; none while it is missing.
 std::optional<std::uintmax_t> AnswerSize(const fs::path& path) {
   std::error_code failed;
   const std::uintmax_t size = fs::file_size(path, failed);
-  return failed || size == 0 ? std::nullopt : std::optional(size);
+  return failed ? std::nullopt : std::optional(size);
+}
+
+/// What an answer file holds at a look.
+struct Look {
+  bool answered = false;
+  bool too_large = false;
+  std::string text;
+  std::string problem;  ///< Why there is no answer in it yet; for people.
+};
+
+Look LookInto(const fs::path& path, std::uintmax_t size) {
+  Look look;
+  look.too_large = size > kMaxAnswerBytes;
+  if (look.too_large) return look;
+  std::ifstream file(path, std::ios::binary);
+  look.text.assign(std::istreambuf_iterator<char>(file), {});
+  if (!file) {
+    look.problem = "cannot be read";
+  } else if (IsBlankAnswer(look.text)) {
+    look.problem = "is empty";
+  } else {
+    look.answered = true;
+  }
+  return look;
+}
+
+/// Says what to do about an answer in another encoding; empty where it is
+/// UTF-8.
+std::string EncodingHint(std::string_view text) {
+  const bool marked =
+      text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  if (marked || text.find('\0') != std::string_view::npos) {
+    return "answer.txt looks like UTF-16 or holds zero bytes: save it as UTF-8";
+  }
+  return IsUtf8(text) ? ""
+                      : "answer.txt is no UTF-8 (perhaps Latin-1): save it as "
+                        "UTF-8";
 }
 
 }  // namespace
@@ -91,7 +132,7 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
   const fs::path folder =
       fs::path(options_.folder) / ExchangeName(identity_, request);
   const fs::path answer = folder / "answer.txt";
-  if (!AnswerSize(answer)) {
+  if (AnswerSize(answer).value_or(0) == 0) {
     const Status asked = WriteQuestion(folder, request);
     if (!asked.ok()) {
       reply.reason = NoAnswer::kTransport;
@@ -101,13 +142,25 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
   }
   reply.tries = 1;
   std::optional<std::uintmax_t> before;
+  std::string said;
+  Look look;
   for (;;) {
     const auto size = AnswerSize(answer);
-    if (size && size == before) break;
+    if (size && size == before) {
+      look = LookInto(answer, *size);
+      if (look.answered || look.too_large) break;
+      // The worker's thread: nobody waits for it but the question.
+      if (look.problem != said) {
+        std::cerr << answer.string() + ": " + look.problem +
+                         "; waiting until an answer is in it\n";
+        said = look.problem;
+      }
+    }
     before = size;
     if (seconds() >= options_.deadline_s) {
       reply.reason = NoAnswer::kDeadline;
-      reply.error = answer.string() + ": no answer in time";
+      reply.error = answer.string() + ": no answer in time" +
+                    (said.empty() ? "" : ", it " + said);
       return reply;
     }
     if (!WaitUnlessStopped(options_.poll_s, stop)) {
@@ -117,13 +170,15 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
   }
   reply.t_llm_s = seconds();
   reply.timed = false;
-  if (*before > kMaxAnswerBytes) {
+  if (look.too_large) {
     reply.reason = NoAnswer::kTooLarge;
+    reply.error = answer.string() + ": more than " +
+                  std::to_string(kMaxAnswerBytes) + " bytes";
     return reply;
   }
-  std::ifstream file(answer, std::ios::binary);
-  reply.text.assign(std::istreambuf_iterator<char>(file), {});
   reply.status = ReplyStatus::kAnswered;
+  reply.error = EncodingHint(look.text);
+  reply.text = WithoutThinking(look.text);
   reply.model = options_.model;
   return reply;
 }

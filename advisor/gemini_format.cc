@@ -81,6 +81,7 @@ class GeminiFormat : public WireFormat {
     }
     const json& candidate = candidates.front();
     result.text = AnswerText(candidate);
+    result.has_thinking = thinking > 0 || HasThought(candidate);
     const std::string finish = Upper(TextOr(candidate, "finishReason", "STOP"));
     if (finish == "STOP") {
       result.status = ReplyStatus::kAnswered;
@@ -137,6 +138,13 @@ class GeminiFormat : public WireFormat {
       if (MemberOf(part, "thought") != true) text += TextOr(part, "text");
     }
     return text;
+  }
+
+  static bool HasThought(const json& candidate) {
+    const json& parts = MemberOf(MemberOf(candidate, "content"), "parts");
+    return std::any_of(parts.begin(), parts.end(), [](const json& part) {
+      return MemberOf(part, "thought") == true;
+    });
   }
 
   /// "22s", "1.5s".

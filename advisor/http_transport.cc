@@ -5,8 +5,10 @@
 #include <cmath>
 #include <new>
 
+#include <arpa/inet.h>
 #include <curl/curl.h>
 
+#include "advisor/ascii.h"
 #include "terrain/require.h"
 
 namespace terra::advisor {
@@ -38,11 +40,12 @@ std::string UrlPart(CURLU* url, CURLUPart part) {
   return copy;
 }
 
+/// Pre: the host is in lower case.
 bool IsLoopback(const std::string& host) {
-  const bool digits =
-      host.find_first_not_of("0123456789.") == std::string::npos;
+  in_addr address{};
+  const bool ipv4 = inet_pton(AF_INET, host.c_str(), &address) == 1;
   return host == "localhost" || host == "[::1]" ||
-         (digits && host.starts_with("127."));
+         (ipv4 && ntohl(address.s_addr) >> 24 == 127);
 }
 
 /// What the callbacks write to.
@@ -72,10 +75,7 @@ std::size_t TakeHeader(char* data, std::size_t, std::size_t size, void* user) {
   const std::string_view line(data, size);
   const std::size_t colon = line.find(':');
   if (colon != std::string_view::npos) {
-    std::string name(line.substr(0, colon));
-    std::transform(name.begin(), name.end(), name.begin(), [](char c) {
-      return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    });
+    std::string name = Lowered(line.substr(0, colon));
     std::string_view value = line.substr(colon + 1);
     while (!value.empty() &&
            std::isspace(static_cast<unsigned char>(value.front())) != 0) {
@@ -134,7 +134,7 @@ List HeadersOf(const HttpRequest& request) {
 }
 
 void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
-               Sink& sink) {
+               bool stays_here, Sink& sink) {
   // Rounded up: a call that ends with its time is never seen to end before it.
   const auto milliseconds = [](double seconds) {
     return static_cast<long>(std::ceil(std::max(1.0, seconds * 1000)));
@@ -158,8 +158,8 @@ void Configure(CURL* easy, const HttpRequest& request, curl_slist* headers,
   curl_easy_setopt(easy, CURLOPT_WRITEDATA, &sink);
   curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, TakeHeader);
   curl_easy_setopt(easy, CURLOPT_HEADERDATA, &sink);
-  if (request.url.starts_with("http://")) {
-    // Plain text stays on this machine: never by way of a proxy.
+  if (stays_here) {
+    // Plain text goes to this machine only: never by way of a proxy.
     curl_easy_setopt(easy, CURLOPT_NOPROXY, "*");
   }
 }
@@ -191,7 +191,8 @@ HttpTransport::~HttpTransport() = default;
 HttpReply HttpTransport::Post(const HttpRequest& request,
                               std::stop_token stop) {
   HttpReply reply;
-  if (const auto checked = CheckBaseUrl(request.url); !checked) {
+  const auto checked = CheckBaseUrl(request.url);
+  if (!checked) {
     reply.fault = TransportFault::kRefused;
     reply.fault_text = checked.error().message;
     return reply;
@@ -206,7 +207,7 @@ HttpReply HttpTransport::Post(const HttpRequest& request,
   Sink sink{reply, request.max_reply_bytes};
   const List headers = HeadersOf(request);
   curl_easy_reset(easy);
-  Configure(easy, request, headers.get(), sink);
+  Configure(easy, request, headers.get(), *checked == "loopback", sink);
   curl_multi_add_handle(multi, easy);
   const std::stop_callback wake(stop, [multi] {
     curl_multi_wakeup(multi);
@@ -248,8 +249,9 @@ Result<std::string> CheckBaseUrl(const std::string& url) {
                      "' is no address; write https://HOST[:PORT], or "
                      "http://127.0.0.1:PORT for a server on this machine"};
   }
-  const std::string scheme = UrlPart(parsed.get(), CURLUPART_SCHEME);
-  const bool loopback = IsLoopback(UrlPart(parsed.get(), CURLUPART_HOST));
+  const std::string scheme = Lowered(UrlPart(parsed.get(), CURLUPART_SCHEME));
+  const bool loopback =
+      IsLoopback(Lowered(UrlPart(parsed.get(), CURLUPART_HOST)));
   if (!UrlPart(parsed.get(), CURLUPART_USER).empty() ||
       !UrlPart(parsed.get(), CURLUPART_PASSWORD).empty()) {
     return Error{ErrorCode::kInvalid,

@@ -39,6 +39,15 @@ std::string AtPosition(AnswerFault fault, std::size_t position) {
          std::to_string(position) + " of the answer";
 }
 
+/// What is wrong with an answer, and what is known of how it came to be so.
+std::string FaultDetail(AnswerFault fault, std::size_t position,
+                        const std::string& note) {
+  if (note.empty()) return AtPosition(fault, position);
+  return fault == AnswerFault::kEmpty
+             ? note
+             : AtPosition(fault, position) + "; " + note;
+}
+
 /// Does a list of targets name anything besides start and goal?
 bool HasTarget(const Route& targets, Cell start, Cell goal) {
   for (const Cell cell : targets) {
@@ -153,7 +162,7 @@ MethodOutcome ReadReply(const PlanningCase& in, const MethodOptions& options,
   const Answer answer = ParseAnswer(reply.text, rules);
   if (answer.kind == AnswerKind::kMalformed) {
     return Malformed(std::string(FaultName(answer.fault)),
-                     AtPosition(answer.fault, answer.position));
+                     FaultDetail(answer.fault, answer.position, reply.error));
   }
   MethodOutcome outcome;
   outcome.form = answer.form;

@@ -56,17 +56,17 @@ class OpenAiFormat : public WireFormat {
         CountOr0(MemberOf(usage, "output_tokens_details"), "reasoning_tokens")};
     const std::string status = TextOr(reply, "status");
     if (status == "failed" || status == "cancelled") {
-      const json& error = MemberOf(reply, "error");
-      const std::string code = TextOr(error, "code");
-      result.error = code + ": " + TextOr(error, "message");
-      result.transient =
-          code == "server_error" || code == "rate_limit_exceeded";
-      return result;
+      WireReply failure = FailureOf(MemberOf(reply, "error"), status);
+      failure.model = result.model;
+      failure.response_id = result.response_id;
+      failure.usage = result.usage;
+      return failure;
     }
     // Servers that imitate this form may leave the status out.
     const bool final =
         status == "completed" || status == "incomplete" || status.empty();
     if (!final || !ReadOutput(reply, result, !status.empty())) {
+      result.wrong_form = true;
       result.error = "no final status and answer in the reply";
       return result;
     }
@@ -115,6 +115,7 @@ class OpenAiFormat : public WireFormat {
     bool has_message = false;
     std::string refusal;
     for (const json& item : output) {
+      if (TextOr(item, "type") == "reasoning") result.has_thinking = true;
       if (TextOr(item, "type") != "message" ||
           (has_final && TextOr(item, "phase") != "final_answer")) {
         continue;

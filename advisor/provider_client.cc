@@ -13,6 +13,7 @@
 #include "advisor/endpoint_url.h"
 #include "advisor/interruptible_wait.h"
 #include "advisor/wire_json.h"
+#include "terrain/utf8.h"
 
 namespace terra::advisor {
 namespace {
@@ -63,7 +64,7 @@ std::string Remedy(const TryOutcome& outcome, const std::string& url,
     case 405:
       return "; check --base-url (" + url + ") and --model (" + model + ")";
     default:
-      return outcome.http_status < 300
+      return outcome.wrong_form
                  ? "; does " + url + " speak this backend's form?"
                  : "";
   }
@@ -72,12 +73,13 @@ std::string Remedy(const TryOutcome& outcome, const std::string& url,
 /// What comes from outside is printed on terminals and in logs: control
 /// characters must not steer those.
 std::string OnOneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-      },
-      ' ');
+  for (std::size_t at = 0; at < text.size();) {
+    const Utf8Character character = ReadUtf8(text, at);
+    if (!character.valid || IsControl(character.code)) {
+      text.replace(at, character.bytes, character.bytes, ' ');
+    }
+    at += character.bytes;
+  }
   return text;
 }
 
@@ -132,11 +134,13 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
 
 ProviderClient::ProviderClient(std::unique_ptr<WireFormat> format,
                                ProviderOptions options, LlmIdentity identity,
-                               std::string key)
+                               std::string key,
+                               std::unique_ptr<HttpSender> http)
     : format_(std::move(format)),
       options_(std::move(options)),
       identity_(std::move(identity)),
-      key_(std::move(key)) {}
+      key_(std::move(key)),
+      http_(std::move(http)) {}
 
 LlmReply ProviderClient::Ask(const LlmRequest& request, std::stop_token stop) {
   HttpRequest http;
@@ -185,7 +189,7 @@ LlmReply ProviderClient::Ask(const LlmRequest& request, std::stop_token stop) {
 
 TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
                                std::stop_token stop) {
-  HttpReply http = transport_.Post(request, stop);
+  HttpReply http = http_->Post(request, stop);
   TryOutcome outcome;
   outcome.fault = http.fault;
   outcome.http_status = reply.http_status = http.status;
@@ -209,6 +213,8 @@ TryOutcome ProviderClient::Try(const HttpRequest& request, LlmReply& reply,
   }
   WireReply wire = format_->ReadReply(*whole);
   outcome.reply_failed = wire.transient;
+  outcome.wrong_form = wire.wrong_form;
+  outcome.error.retry_after_s = wire.retry_after_s;
   reply.status = wire.status;
   reply.text = WithoutKey(std::move(wire.text));
   reply.error = OnOneLine(WithoutKey(std::move(wire.error)));

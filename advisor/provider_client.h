@@ -33,8 +33,10 @@ class ProviderClient : public LlmClient {
   static Result<std::unique_ptr<LlmClient>> Create(
       const std::string& provider, const ProviderOptions& options);
 
-  ProviderClient(std::unique_ptr<WireFormat> format, ProviderOptions options,
-                 LlmIdentity identity, std::string key);
+  ProviderClient(
+      std::unique_ptr<WireFormat> format, ProviderOptions options,
+      LlmIdentity identity, std::string key,
+      std::unique_ptr<HttpSender> http = std::make_unique<HttpTransport>());
 
   const LlmIdentity& identity() const override { return identity_; }
   LlmReply Ask(const LlmRequest& request, std::stop_token stop) override;
@@ -51,7 +53,7 @@ class ProviderClient : public LlmClient {
   ProviderOptions options_;
   LlmIdentity identity_;
   std::string key_;
-  HttpTransport transport_;
+  std::unique_ptr<HttpSender> http_;
 };
 
 }  // namespace terra::advisor

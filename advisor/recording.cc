@@ -151,7 +151,7 @@ Result<std::string> AnswerRecord(std::string_view open_line,
     PutReply(reply, utc, line);
     return Dumped(line);
   } catch (const json::exception& error) {
-    return Error{ErrorCode::kInvalid, error.what()};
+    return Error{ErrorCode::kInvalid, JsonFault(error)};
   }
 }
 
@@ -190,7 +190,7 @@ Result<RecordedCall> ParseRecord(std::string_view text) {
     reply.recorded_at = line.at("utc").get<std::string>();
     return call;
   } catch (const json::exception& error) {
-    return Error{ErrorCode::kInvalid, error.what()};
+    return Error{ErrorCode::kInvalid, JsonFault(error)};
   }
 }
 

@@ -228,7 +228,7 @@ Result<ReferencePool> ReferencePool::Parse(std::string_view text) {
       if (!read) return AtLine(number, read.error().message);
       legend = *std::move(read);
     } catch (const json::exception& error) {
-      return AtLine(number, error.what());
+      return AtLine(number, JsonFault(error));
     }
   }
   return Create(std::move(pairs));

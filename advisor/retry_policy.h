@@ -26,8 +26,9 @@ struct TryOutcome {
   int http_status = 0;
   /// Names in lower case.
   std::map<std::string, std::string> headers;
-  WireError error;            ///< Of the body, for an error status.
+  WireError error;            ///< Of the body, where it reports one.
   bool reply_failed = false;  ///< A success that reports a passing failure.
+  bool wrong_form = false;    ///< A success in another form than was expected.
 };
 
 struct RetryLimits {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "advisor/ascii.h"
 #include "advisor/encoding.h"
 #include "advisor/wire_json.h"
 
@@ -21,7 +22,10 @@ std::string ProviderOf(std::string_view path) {
 }
 
 void AddPng(WireQuestion& question, std::string_view base64) {
-  if (base64.starts_with(kDataUrl)) base64.remove_prefix(kDataUrl.size());
+  // Scheme and type of a data URL may be in any case.
+  if (Lowered(base64.substr(0, kDataUrl.size())) == kDataUrl) {
+    base64.remove_prefix(kDataUrl.size());
+  }
   if (auto png = Base64Decode(base64)) {
     question.pngs.push_back(*std::move(png));
   }

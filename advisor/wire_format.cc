@@ -1,9 +1,14 @@
 #include "advisor/wire_format.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <utility>
 
+#include "advisor/answer_parser.h"
+#include "advisor/ascii.h"
 #include "advisor/event_stream.h"
+#include "advisor/thinking.h"
 #include "advisor/wire_json.h"
 
 namespace terra::advisor {
@@ -29,10 +34,74 @@ std::string OtherMessage(const json& reply, std::string_view body) {
   return TextOr(reply, "message");
 }
 
-/// Gateways report a failure behind them inside a success.
+/// Is that an error, or only room for one?
+bool IsFailure(const json& error) {
+  if (error.is_string()) return error != "";
+  return error.is_object() ? !error.empty() : error == true;
+}
+
+/// A provider whose replies have a status says there that one failed.
+bool HasOwnStatus(const json& reply) {
+  const std::string status = TextOr(reply, "status");
+  return status == "completed" || status == "incomplete" ||
+         status == "failed" || status == "cancelled";
+}
+
+/// Gateways report a failure behind them inside a success: at the top, or where
+/// the answer should be. Null where there is none.
+const json& FailureInside(const json& reply) {
+  static const json kNone;
+  const json& error = MemberOf(reply, "error");
+  if (IsFailure(error) && !HasOwnStatus(reply)) return error;
+  for (const char* answers : {"choices", "candidates"}) {
+    const json& list = MemberOf(reply, answers);
+    if (!list.is_array() || list.empty()) continue;
+    const json& inner = MemberOf(list.front(), "error");
+    if (IsFailure(inner)) return inner;
+  }
+  return kNone;
+}
+
+/// The code of an error as a status of HTTP; 0 where it is none.
+std::int64_t StatusIn(const json& error) {
+  const std::string text = TextOr(error, "code");
+  std::int64_t status = CountOr0(error, "code");
+  std::from_chars(text.data(), text.data() + text.size(), status);
+  return status;
+}
+
+/// May the failure pass on its own, as the providers name such?
 bool MayPass(const json& error) {
-  const std::int64_t code = CountOr0(error, "code");
-  return code == 408 || code == 429 || (code >= 500 && code < 600);
+  constexpr std::array<std::string_view, 14> kPassing = {
+      "api_error",        "deadline_exceeded",     "internal",
+      "internal_error",   "internal_server_error", "overloaded",
+      "overloaded_error", "rate_limit_error",      "rate_limit_exceeded",
+      "server_error",     "resource_exhausted",    "timeout_error",
+      "unavailable",      "unavailable_error"};
+  const std::int64_t status = StatusIn(error);
+  if (status == 408 || status == 429) return true;
+  if (status >= 500 && status < 600) return status != 501;
+  if (status != 0) return false;
+  for (const char* key : {"code", "type", "status"}) {
+    const std::string word = Lowered(TextOr(error, key));
+    if (std::find(kPassing.begin(), kPassing.end(), word) != kPassing.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// "502", "server_error", ...; empty where an error has no code.
+std::string CodeIn(const json& error) {
+  const std::int64_t number = CountOr0(error, "code");
+  return number == 0 ? TextOr(error, "code") : std::to_string(number);
+}
+
+WireReply WrongForm(std::string why) {
+  WireReply bad;
+  bad.wrong_form = true;
+  bad.error = std::move(why);
+  return bad;
 }
 
 }  // namespace
@@ -51,38 +120,61 @@ std::optional<std::string> WireFormat::Whole(std::string body) const {
 }
 
 WireReply WireFormat::ReadReply(std::string_view body) const {
-  WireReply bad;
   const json reply = ParsedOutside(body);
-  if (!reply.is_object()) {
-    bad.error = "the reply is no JSON object";
-    return bad;
+  if (!reply.is_object()) return WrongForm("the reply is no JSON object");
+  if (const json& failure = FailureInside(reply); !failure.is_null()) {
+    return FailureOf(failure, OtherMessage(reply, body));
   }
-  const json& error = MemberOf(reply, "error");
-  // A provider that reports so inside a success says it in `status` as well.
-  if (!error.is_null() && MemberOf(reply, "status").is_null()) {
-    bad.error = ReadError(body).message;
-    if (!bad.error.empty()) {
-      bad.transient = MayPass(error);
-      return bad;
-    }
-  }
+  WireReply read;
   try {
-    return ReadReplyJson(reply);
+    read = ReadReplyJson(reply);
   } catch (const json::exception& wrong) {
-    bad.error = "the reply has not the provider's form: " +
-                std::string(wrong.what()).substr(0, kMaxMessage);
-    return bad;
+    return WrongForm("the reply has not the form of " +
+                     std::string(provider()) + ": " +
+                     JsonFault(wrong).substr(0, kMaxMessage));
   }
+  std::string answer = WithoutThinking(read.text);
+  read.has_thinking = read.has_thinking || answer.size() < read.text.size();
+  read.text = std::move(answer);
+  if (read.status == ReplyStatus::kAnswered && read.error.empty() &&
+      read.has_thinking && IsBlankAnswer(read.text)) {
+    read.error =
+        "the model thought and gave no answer: allow more output tokens "
+        "(--max-output-tokens) or less thinking (--effort, or the server's "
+        "own option)";
+  }
+  return read;
+}
+
+WireReply WireFormat::FailureOf(const json& error,
+                                const std::string& otherwise) const {
+  WireError read = ReadErrorValue(error);
+  if (read.message.empty()) read.message = otherwise.substr(0, kMaxMessage);
+  const std::string code = CodeIn(error);
+  WireReply failed;
+  failed.error = !read.message.empty() && !code.empty()
+                     ? code + ": " + read.message
+                     : code + read.message;
+  if (failed.error.empty()) failed.error = "the server reports an error";
+  failed.transient = !read.final && MayPass(error);
+  failed.retry_after_s = read.retry_after_s;
+  return failed;
 }
 
 WireError WireFormat::ReadError(std::string_view body) const {
-  WireError result;
   json reply = ParsedOutside(body);
   if (reply.is_array() && reply.size() == 1) reply = json(reply[0]);
-  const json& error = MemberOf(reply, "error");
+  WireError result = ReadErrorValue(MemberOf(reply, "error"));
+  if (result.message.empty()) {
+    result.message = OtherMessage(reply, body).substr(0, kMaxMessage);
+  }
+  return result;
+}
+
+WireError WireFormat::ReadErrorValue(const json& error) const {
+  WireError result;
   result.message =
       error.is_string() ? error.get<std::string>() : TextOr(error, "message");
-  if (result.message.empty()) result.message = OtherMessage(reply, body);
   if (error.is_object()) {
     try {
       ReadErrorJson(error, result);

@@ -27,13 +27,20 @@ struct GenerationSettings {
 /// A reply with a success status, as far as the provider's form tells.
 struct WireReply {
   ReplyStatus status = ReplyStatus::kNoAnswer;
-  std::string text;
-  std::string error;  ///< Why it is refused, failed or unreadable.
-  /// A failure that the provider reports inside a success may pass on its own.
+  std::string text;  ///< Without what the model thought.
+  /// Why it is refused, failed or unreadable, or why an answer is empty.
+  std::string error;
+  bool wrong_form = false;  ///< The body is not in this form.
+  /// A failure that the provider reports inside a success may pass on its own,
+  /// ...
   bool transient = false;
+  std::optional<double> retry_after_s;  ///< ... as far as the body says when.
+  bool has_thinking = false;            ///< Beside the text or in it.
   std::string model;
   std::string response_id;
   LlmUsage usage;
+
+  bool came() const { return status != ReplyStatus::kNoAnswer; }
 };
 
 /// A reply with an error status.
@@ -77,7 +84,13 @@ class WireFormat {
   WireError ReadError(std::string_view body) const;
 
  protected:
-  /// May throw nlohmann::json::exception for a wrong form.
+  /// No answer, but a failure that the server reports inside a success; what
+  /// it says `otherwise` counts where the error itself has no message.
+  WireReply FailureOf(const nlohmann::json& error,
+                      const std::string& otherwise = "") const;
+
+  /// May throw nlohmann::json::exception for a wrong form. Thinking inside the
+  /// text is taken out afterwards.
   virtual WireReply ReadReplyJson(const nlohmann::json& reply) const = 0;
   /// The reply whose events these are; null without the answer's end.
   virtual nlohmann::json JoinEvents(
@@ -85,6 +98,9 @@ class WireFormat {
   /// Adds what is the provider's own; `error` is the object of that name.
   virtual void ReadErrorJson(const nlohmann::json& error,
                              WireError& result) const = 0;
+
+ private:
+  WireError ReadErrorValue(const nlohmann::json& error) const;
 };
 
 /// The settings that change answers, as JSON text with sorted keys.

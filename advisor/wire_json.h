@@ -43,6 +43,26 @@ inline nlohmann::json ParsedOutside(std::string_view text) {
   return nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
 }
 
+/// What is wrong with JSON, for people: without the library's own marks.
+inline std::string JsonFault(const nlohmann::json::exception& fault) {
+  constexpr int kWrongType = 302;
+  constexpr int kShortArray = 401;
+  constexpr int kNoSuchKey = 403;
+  constexpr int kOwn = 501;  // Of IntegerAt.
+  if (const auto* parse =
+          dynamic_cast<const nlohmann::json::parse_error*>(&fault)) {
+    return "no JSON, from byte " + std::to_string(parse->byte) + " on";
+  }
+  if (fault.id == kShortArray) return "an array has too few elements";
+  if (fault.id != kWrongType && fault.id != kNoSuchKey && fault.id != kOwn) {
+    return "a value has another type than expected";
+  }
+  const std::string_view what = fault.what();
+  const std::size_t mark = what.find("] ");
+  return std::string(mark == std::string_view::npos ? what
+                                                    : what.substr(mark + 2));
+}
+
 /// Replies leave out fields, or set them to null: these read what is there.
 inline std::string TextOr(const nlohmann::json& object, const char* key,
                           std::string otherwise = "") {

@@ -60,6 +60,7 @@ struct OpenRequest {
 Result<OpenRequest> ParseOpenRequest(const std::string& line) {
   try {
     const auto json = advisor::ParsedOutside(line);
+    if (json.is_discarded()) return Error{ErrorCode::kInvalid, "no JSON"};
     return OpenRequest{line,
                        json.at("request_hash").get<std::string>(),
                        advisor::IntegerAt<int>(json, "repeat"),
@@ -68,7 +69,7 @@ Result<OpenRequest> ParseOpenRequest(const std::string& line) {
                         json.at("model_requested").get<std::string>(),
                         json.at("settings").get<std::string>(), "provider"}};
   } catch (const nlohmann::json::exception& error) {
-    return Error{ErrorCode::kInvalid, error.what()};
+    return Error{ErrorCode::kInvalid, advisor::JsonFault(error)};
   }
 }
 

@@ -37,6 +37,10 @@ inline constexpr std::int64_t kMaxSteps = 80'000;
 inline constexpr std::size_t kMaxAnswerBytes = 16'000;
 /// Names of processes, advisors, methods, models.
 inline constexpr std::size_t kMaxNameBytes = 63;
+/// States and errors, one line each.
+inline constexpr std::size_t kMaxErrorBytes = 1'000;
+/// Configurations and notes in a log.
+inline constexpr std::size_t kMaxConfigBytes = 16'000;
 /// LCM takes channel names up to this length.
 inline constexpr std::size_t kMaxChannelBytes = 63;
 

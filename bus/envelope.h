@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bus/message_texts.h"
 #include "bus/messages.h"
 #include "bus/transport.h"
 
@@ -19,6 +20,7 @@ std::int64_t RandomId();
 std::int64_t UnixMicroseconds();
 
 /// Stamps and sends what one process says: utime, session, and seq per channel.
+/// No text of a message can make it unfit to be sent: texts are cleaned here.
 /// Threads: one.
 class Outbox {
  public:
@@ -27,14 +29,15 @@ class Outbox {
 
   std::int64_t session() const { return session_; }
 
-  /// Stamps the message and sends it. Returns false when the bus refused; seq
-  /// counts it all the same, so that receivers see the loss.
+  /// Stamps the message, cleans its texts and sends it. Returns false when the
+  /// bus refused; seq counts it all the same, so that receivers see the loss.
   template <typename T>
   bool Send(T& message) {
     constexpr Channel kChannel = MessageTraits<T>::kChannel;
     message.utime = UnixMicroseconds();
     message.session = session_;
     message.seq = ++seq_[static_cast<std::size_t>(kChannel)];
+    CleanTexts(message);
     return transport_.Publish(kChannel, Encode(message));
   }
 

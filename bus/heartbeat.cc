@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -15,8 +16,6 @@
 namespace terra::bus {
 namespace {
 
-constexpr std::size_t kMaxErrorBytes = 500;
-constexpr std::size_t kMaxConfigBytes = 16'000;
 constexpr Duration kShortestPeriod = std::chrono::milliseconds(100);
 
 std::string HostName() {
@@ -29,9 +28,9 @@ std::string HostName() {
 
 Heartbeat::Heartbeat(std::string name, std::string config, Outbox& out,
                      const Bus& bus, const Inbox& inbox)
-    : name_(CleanText(name, kMaxNameBytes)),
-      config_(CleanText(config, kMaxConfigBytes)),
-      host_(CleanText(HostName(), kMaxNameBytes)),
+    : name_(std::move(name)),
+      config_(std::move(config)),
+      host_(HostName()),
       out_(out),
       bus_(bus),
       inbox_(inbox) {}
@@ -53,9 +52,9 @@ void Heartbeat::SendStatus(const Node& node) {
   status.status_name = name_;
   status.host = host_;
   status.pid = static_cast<std::int32_t>(getpid());
-  status.state = CleanText(node.state(), kMaxErrorBytes);
+  status.state = node.state();
   status.build_id = BuildId();
-  status.last_error = CleanText(node.last_error(), kMaxErrorBytes);
+  status.last_error = node.last_error();
   Counters counters;
   counters.emplace_back("sent", bus_.counters().sent);
   counters.emplace_back("send_failed", bus_.counters().send_failed);
@@ -67,7 +66,7 @@ void Heartbeat::SendStatus(const Node& node) {
     status.counter_name.push_back(counter);
     status.counter_value.push_back(value);
   }
-  out_.Send(status);
+  out_.Send(status);  // And cleans what is logged below.
 
   if (status.state != logged_state_) LogInfo(status.state);
   if (status.last_error != logged_error_ && !status.last_error.empty()) {

@@ -11,6 +11,7 @@
 #include "bus/lcm_url.h"
 #include "bus/log.h"
 #include "bus/usage_message.h"
+#include "bus/wire.h"
 #include "output/standard_output.h"
 
 namespace terra::bus {
@@ -76,8 +77,10 @@ int ParseAndServe(const ProcessSpec& spec, int argc, char** argv) {
   AddBusOptions(app, options);
   app.add_option("--name", name, "name in heartbeats and messages")
       ->check([](const std::string& text) {
-        return text.empty() || text.size() > kMaxNameBytes
-                   ? "a name has 1 to 63 bytes"
+        // Others know a process by its name as it stands in messages.
+        return text.empty() || CleanLine(text, kMaxNameBytes) != text
+                   ? "a name is 1 to 63 bytes of UTF-8 without control "
+                     "characters"
                    : "";
       });
   app.set_config("--config", "", "TOML file with any of these options");

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <limits>
 
+#include "terrain/utf8.h"
+
 namespace terra::bus {
 namespace {
 
@@ -89,6 +91,10 @@ std::size_t FieldSize(char kind) {
   }
 }
 
+bool IsLineLayout(char32_t code) {
+  return code == '\t' || code == '\n' || code == '\r';
+}
+
 bool SkipField(Walker& walker, const Field& field, std::size_t count) {
   if (field.kind != 's') return walker.Skip(count, FieldSize(field.kind));
   for (std::size_t i = 0; i < count; ++i) {
@@ -134,17 +140,26 @@ Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
 }
 
 std::string CleanText(std::string_view text, std::size_t max_bytes) {
-  std::string clean(text);
-  std::erase(clean, '\0');
-  if (clean.size() > max_bytes) {
-    std::size_t end = max_bytes;
-    // Bytes 10xxxxxx continue a character.
-    while (end > 0 && (static_cast<unsigned char>(clean[end]) & 0xC0) == 0x80) {
-      --end;
-    }
-    clean.resize(end);
+  constexpr std::string_view kReplacement = "\uFFFD";
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    const Utf8Character character = ReadUtf8(text, at);
+    const std::string_view kept =
+        !character.valid ||
+                (IsControl(character.code) && !IsLineLayout(character.code))
+            ? kReplacement
+            : text.substr(at, character.bytes);
+    if (clean.size() + kept.size() > max_bytes) break;
+    clean += kept;
+    at += character.bytes;
   }
   return clean;
+}
+
+std::string CleanLine(std::string_view text, std::size_t max_bytes) {
+  std::string line = CleanText(text, max_bytes);
+  std::replace_if(line.begin(), line.end(), IsLineLayout, ' ');
+  return line;
 }
 
 }  // namespace terra::bus

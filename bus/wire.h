@@ -60,8 +60,13 @@ std::vector<std::uint8_t> Encode(const T& message) {
   return bytes;
 }
 
-/// Returns a text that may stand in a message: without zero bytes, cut to a
-/// length (never within a UTF-8 character).
+/// Returns a text that may stand in a message: valid UTF-8 of at most so many
+/// bytes, cut between characters. Each byte that is no UTF-8 and each control
+/// character but tab and line breaks becomes U+FFFD, so that a reader sees that
+/// something was there.
 std::string CleanText(std::string_view text, std::size_t max_bytes);
+
+/// The same for a name or an error: tabs and line breaks become blanks.
+std::string CleanLine(std::string_view text, std::size_t max_bytes);
 
 }  // namespace terra::bus

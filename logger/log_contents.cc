@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bus/codec.h"
+#include "bus/message_texts.h"
 #include "logger/log_channels.h"
 #include "terrain/digest.h"
 #include "verifier/verify.h"
@@ -270,12 +271,16 @@ std::vector<std::uint8_t> Essence(terra_msg::config_t message) {
   return WithoutEnvelope(std::move(message));
 }
 
+// The gate repeats the names of others, cleaned: so must who derives anew what
+// it said.
 std::vector<std::uint8_t> Essence(terra_msg::deployed_t message) {
+  bus::CleanTexts(message);
   return WithoutEnvelope(std::move(message));
 }
 
 std::vector<std::uint8_t> Essence(terra_msg::verdict_t message) {
   message.t_det_us = 0;
+  bus::CleanTexts(message);
   return WithoutEnvelope(std::move(message));
 }
 

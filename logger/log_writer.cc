@@ -11,6 +11,8 @@
 
 #include <sys/file.h>
 
+#include "bus/message_texts.h"
+
 namespace terra::logger {
 namespace {
 
@@ -100,6 +102,7 @@ void LogWriter::Seal(std::int64_t time_us, std::int8_t kind,
   mark.num_events =
       kind == terra_msg::log_mark_t::KIND_LOST ? num_lost : events_since_mark_;
   mark.mark_text = text;
+  bus::CleanTexts(mark);
   AppendMark(pending_, {num_events_, time_us, part_.mark_channel, {}}, mark,
              since_mark_);
   ++num_events_;

@@ -54,6 +54,12 @@ INSTANTIATE_TEST_SUITE_P(
         {"YesInTypographicQuotes", "\u201cYES\u201d", "yes"},
         {"YesInFence", "```\nYes\n```", "yes"},
         {"YesInNamedFence", "```text\nYes\n```\n", "yes"},
+        {"YesAmongNoBreakSpaces", "\u00a0Yes\u202f\u3000", "yes", kExact},
+        {"YesAfterAByteOrderMark", "\ufeffYes\r\n", "yes", kExact},
+        {"NoWithNoBreakSpaces",
+         "No.\u00a0[(1,\u202f2),\u3000(3,\u2009 4)\u200b]\u2028", kTwo, kExact},
+        {"NoInFenceAfterNoBreakSpace", "\u00a0```\nNo. [(1, 2), (3, 4)]\n```",
+         kTwo},
         {"No", "No. [(1, 2), (3, 4)]", kTwo, kExact},
         {"NoWithoutSpaces", "No.[(1,2),(3,4)]", kTwo, kExact},
         {"NoOverLines", "No.\n[(1, 2),\n (3, 4)]\n", kTwo, kExact},
@@ -244,6 +250,37 @@ TEST(AnswerParserTest, AnyBytesGiveAWellFormedResult) {
       EXPECT_LE(candidate.position, text.size());
     }
   }
+}
+
+TEST(AnswerParserTest, EverySpaceOfUnicodeIsWhiteSpace) {
+  for (const char* space :
+       {"\u0085", "\u00a0", "\u1680", "\u2000", "\u2001", "\u2002",
+        "\u2003", "\u2004", "\u2005", "\u2006", "\u2007", "\u2008",
+        "\u2009", "\u200a", "\u200b", "\u2028", "\u2029", "\u202f",
+        "\u205f", "\u2060", "\u3000", "\ufeff"}) {
+    const std::string s = space;
+    EXPECT_EQ(ParseAnswer(s + "Yes" + s).kind, AnswerKind::kRetain) << s;
+    EXPECT_EQ(
+        ParseAnswer("No." + s + "[(1," + s + "2)," + s + "(3, 4)" + s + "]")
+            .kind,
+        AnswerKind::kPropose)
+        << s;
+    EXPECT_EQ(ParseAnswer(s + s).fault, AnswerFault::kEmpty) << s;
+    EXPECT_TRUE(IsBlankAnswer("\n" + s)) << s;
+  }
+}
+
+TEST(AnswerParserTest, AFaultBehindAWideSpaceIsAtItsByte) {
+  const Answer answer = ParseAnswer("No.\u3000[(1, x)]");
+  EXPECT_EQ(answer.fault, AnswerFault::kNotAnInteger);
+  EXPECT_EQ(answer.position, 11u);
+}
+
+TEST(AnswerParserTest, AZeroByteIsNoSpace) {
+  EXPECT_EQ(ParseAnswer(std::string_view("Yes\0", 4)).kind,
+            AnswerKind::kMalformed);
+  EXPECT_EQ(ParseAnswer(std::string_view("No. [(1\0, 2), (3, 4)]", 21)).kind,
+            AnswerKind::kMalformed);
 }
 
 }  // namespace

@@ -119,5 +119,38 @@ TEST(BatchFormat, IdsAreWhatAllProvidersAccept) {
   EXPECT_EQ(id.find_first_not_of("abcdef0123456789-"), std::string::npos);
 }
 
+TEST(BatchFormat, NoLineShowsTheMarksOfTheJsonLibrary) {
+  for (const char* provider : {"openai", "anthropic", "gemini"}) {
+    const auto format = MakeWireFormat(provider);
+    for (const char* line :
+         {"{}", "[]", "{", "", "7", R"({"custom_id":7})", R"({"key":7})",
+          R"({"custom_id":"a-0","response":null,"error":null})",
+          R"({"custom_id":"a-0","response":{"status_code":200,"body":null}})",
+          R"({"custom_id":"a-0","response":{"status_code":2e9,"body":{}}})",
+          R"({"custom_id":"a-0","response":{"status_code":200,
+              "body":{"output":[{"type":"message"}]}}})",
+          R"({"custom_id":"a-0","result":{"type":7}})",
+          R"({"custom_id":"a-0","result":{"type":"succeeded","message":{}}})",
+          R"({"key":"a-0","response":{"candidates":[]}})",
+          R"({"key":"a-0","response":7})", R"({"key":"a-0"})"}) {
+      const auto read = ReadBatchResult(*format, line);
+      EXPECT_THAT(read.ok() ? read->reply.error : read.error().message,
+                  ::testing::AllOf(::testing::Not(HasSubstr("json.exception")),
+                                   ::testing::Not(::testing::IsEmpty())))
+          << provider << " " << line;
+    }
+  }
+}
+
+TEST(BatchFormat, AFailureInPlaceOfTheAnswerIsNoAnswer) {
+  const auto read = ReadBatchResult(
+      *MakeGeminiFormat(),
+      R"({"key":"a-0","response":{"candidates":[{"error":{"code":503,
+          "message":"no instance"}}]}})");
+  ASSERT_TRUE(read.ok());
+  EXPECT_FALSE(read->reply.came());
+  EXPECT_EQ(read->reply.error, "503: no instance");
+}
+
 }  // namespace
 }  // namespace terra::advisor

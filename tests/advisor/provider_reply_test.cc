@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "advisor/answer_parser.h"
 #include "tests/advisor/provider_calls.h"
 
 namespace terra::advisor {
@@ -124,6 +125,153 @@ TEST_P(ProviderAnswerTest,
   const LlmReply reply = client->Ask(Question(), {});
   EXPECT_EQ(reply.reason, NoAnswer::kBadReply);
   EXPECT_THAT(reply.error, HasSubstr("no such model"));
+}
+
+TEST_P(ProviderAnswerTest, WhatAModelThoughtIsNoAnswer) {
+  for (const char* said :
+       {"No. [(1, 1), (9, 9)] hits a wall.\n</think>\n\nYes",
+        "<think>No. [(1, 1), (9, 9)]</think>Yes",
+        "<think>a</think>No.<think>b</think>\nYes", "hm</THINK> Yes",
+        "hm</thinking>Yes", "[THINK]hm[/THINK]Yes", "hm</seed:think>Yes",
+        "<|channel|>analysis<|message|>hm<|end|><|start|>assistant"
+        "<|channel|>final<|message|>Yes"}) {
+    const WireReply read =
+        MakeWireFormat(GetParam())->ReadReply(ReplyBody(GetParam(), said));
+    EXPECT_EQ(read.status, ReplyStatus::kAnswered) << read.error;
+    EXPECT_EQ(ParseAnswer(read.text).kind, AnswerKind::kRetain) << read.text;
+  }
+  for (const char* unfinished : {"<think>Yes", "</think> <think>Yes"}) {
+    const WireReply read = MakeWireFormat(GetParam())
+                               ->ReadReply(ReplyBody(GetParam(), unfinished));
+    EXPECT_EQ(read.text, "") << unfinished;
+    EXPECT_THAT(read.error, HasSubstr("--max-output-tokens"));
+  }
+}
+
+TEST_P(ProviderAnswerTest, ThinkingWithoutAnAnswerIsExplained) {
+  const std::map<std::string, std::string> bodies = {
+      {"openai", R"({"status":"completed","output":[{"type":"reasoning"},
+          {"type":"message","content":[]}]})"},
+      {"anthropic", R"({"stop_reason":"end_turn","content":[
+          {"type":"thinking","thinking":"hm"}]})"},
+      {"gemini", R"({"candidates":[{"finishReason":"STOP","content":{"parts":[
+          {"text":"hm","thought":true}]}}]})"},
+      {"chat", R"({"choices":[{"finish_reason":"stop","message":{
+          "content":"","reasoning_content":"hm"}}]})"}};
+  const WireReply read =
+      MakeWireFormat(GetParam())->ReadReply(bodies.at(GetParam()));
+  EXPECT_EQ(read.status, ReplyStatus::kAnswered) << "an attempt all the same";
+  EXPECT_EQ(read.text, "");
+  EXPECT_THAT(read.error, HasSubstr("thought and gave no answer"));
+}
+
+TEST_P(ProviderAnswerTest, NoReplyShowsTheMarksOfTheJsonLibrary) {
+  const auto format = MakeWireFormat(GetParam());
+  for (const char* body :
+       {R"({"choices":[]})",
+        R"({"choices":{}})",
+        R"({"choices":[{}]})",
+        R"({"choices":[{"message":null}]})",
+        R"({"choices":null})",
+        R"({"choices":[{"message":{"content":[1]}}]})",
+        R"({"choices":[{"message":{"content":[{"type":1}]}}]})",
+        R"({"choices":["x"]})",
+        R"({"content":null})",
+        R"({"content":7})",
+        R"({"content":[{}]})",
+        R"({"content":["x"]})",
+        R"({"content":[{"type":"text","text":null}]})",
+        R"({"output":[{"type":"message"}]})",
+        R"({"output":7})",
+        R"({"output":[{"type":"message","content":[{"type":"text"}]}]})",
+        R"({"candidates":[]})",
+        R"({"candidates":7})",
+        "{}",
+        "[]",
+        "7",
+        "{",
+        "",
+        R"({"output":["x"]})",
+        R"({"status":"completed","output":null})"}) {
+    const WireReply read = format->ReadReply(body);
+    EXPECT_THAT(read.error, Not(HasSubstr("json.exception"))) << body;
+    EXPECT_EQ(read.came(), read.error.empty()) << body;
+  }
+}
+
+TEST(ProviderReplyTest, AFailureInPlaceOfTheAnswerIsNoAnswerAndAskedAgain) {
+  ScriptedReply failing;
+  failing.body = R"({"id":"g1","choices":[{"finish_reason":"error","error":{
+      "code":502,"message":"Provider returned error"},
+      "message":{"role":"assistant","content":"No. [(1, 2), (3"}}]})";
+  ScriptedReply amid;
+  amid.body = R"({"choices":[{"finish_reason":"error",
+      "message":{"role":"assistant","content":"No"}}]})";
+  ScriptedLlmServer server({failing, amid, Good("chat")});
+  const LlmReply reply = Client("chat", server.url())->Ask(Question(), {});
+  EXPECT_EQ(reply.text, "Yes") << reply.error;
+  EXPECT_EQ(reply.tries, 3);
+
+  ScriptedReply refused;
+  refused.body = R"({"choices":[{"error":{"code":400,"message":"bad picture"},
+      "message":{"role":"assistant","content":""}}]})";
+  ScriptedLlmServer final_one({refused});
+  const LlmReply none = Client("chat", final_one.url())->Ask(Question(), {});
+  EXPECT_EQ(none.status, ReplyStatus::kNoAnswer);
+  EXPECT_EQ(none.tries, 1);
+  EXPECT_EQ(none.error, "400: bad picture");
+}
+
+TEST(ProviderReplyTest, AStreamsFailureInPlaceOfTheAnswerIsNoAnswer) {
+  const auto format = MakeChatFormat();
+  const auto whole = format->Whole(
+      "data: {\"choices\":[{\"delta\":{\"content\":\"No\"}}]}\n\n"
+      "data: {\"choices\":[{\"delta\":{},\"error\":{\"code\":429,"
+      "\"message\":\"slow down\"}}]}\n\n");
+  ASSERT_TRUE(whole);
+  const WireReply read = format->ReadReply(*whole);
+  EXPECT_EQ(read.status, ReplyStatus::kNoAnswer);
+  EXPECT_TRUE(read.transient);
+  EXPECT_EQ(read.error, "429: slow down");
+}
+
+TEST_P(ProviderAnswerTest, AFailureThatMayPassIsKnownByItsWordToo) {
+  const auto format = MakeWireFormat(GetParam());
+  for (const char* passing :
+       {R"({"type":"error","error":{"type":"overloaded_error","message":"m"}})",
+        R"({"error":{"status":"UNAVAILABLE","message":"m"}})",
+        R"({"error":{"code":"rate_limit_exceeded","message":"m"}})",
+        R"({"error":{"code":"503","message":"m"}})"}) {
+    const WireReply read = format->ReadReply(passing);
+    EXPECT_TRUE(read.transient) << passing;
+    EXPECT_FALSE(read.came()) << passing;
+  }
+  for (const char* lasting :
+       {R"({"error":{"type":"invalid_request_error","message":"m"}})",
+        R"({"error":{"code":400,"type":"server_error","message":"m"}})",
+        R"({"error":true,"message":"m"})", R"({"error":"m"})"}) {
+    const WireReply read = format->ReadReply(lasting);
+    EXPECT_FALSE(read.transient) << lasting;
+    EXPECT_FALSE(read.came()) << lasting;
+    EXPECT_THAT(read.error, ::testing::EndsWith("m")) << lasting;
+  }
+}
+
+TEST(ProviderReplyTest, OnlyAForeignFormRaisesTheQuestionOfTheAddress) {
+  ScriptedReply limited;
+  limited.body = R"({"error":{"code":429,"message":"rate limit"}})";
+  limited.headers = {{"retry-after-ms", "1"}};
+  ScriptedReply foreign;
+  foreign.body = R"({"answer":"Yes"})";
+  ScriptedLlmServer busy({limited});
+  ScriptedLlmServer other({foreign});
+  const std::string limit =
+      Client("chat", busy.url())->Ask(Question(), {}).error;
+  EXPECT_THAT(limit, HasSubstr("429: rate limit"));
+  EXPECT_THAT(limit, HasSubstr("asked 4 times"));
+  EXPECT_THAT(limit, Not(HasSubstr("speak this backend's form")));
+  EXPECT_THAT(Client("chat", other.url())->Ask(Question(), {}).error,
+              HasSubstr("speak this backend's form"));
 }
 
 TEST(ProviderReplyTest, TheReasonIsFoundInEveryFormOfError) {

@@ -109,11 +109,12 @@ TEST(ProviderSecurityTest, ACertificateThatNobodyVouchesForIsRefused) {
 
 TEST(ProviderSecurityTest, NothingFromOutsideSteersATerminal) {
   ScriptedReply hostile = Failing(400);
-  hostile.body = ErrorBody("openai", "bad\x1b[2J\r\nmodel\x7f");
+  hostile.body = ErrorBody("openai", "bad\x1b[2J\r\nmodel\x7f\u009b2J");
   ScriptedLlmServer server({hostile});
   const std::string error =
       Client("openai", server.url())->Ask(Question(), {}).error;
   EXPECT_EQ(error.find_first_of("\x1b\r\n\x7f"), std::string::npos) << error;
+  EXPECT_EQ(error.find("\u009b"), std::string::npos) << error;
 }
 
 TEST(ProviderSecurityTest, NoValueBeginsAHeaderOfItsOwn) {
@@ -127,6 +128,57 @@ TEST(ProviderSecurityTest, NoValueBeginsAHeaderOfItsOwn) {
   EXPECT_EQ(reply.reason, NoAnswer::kTransport);
   EXPECT_THAT(reply.error, HasSubstr("control character"));
   EXPECT_EQ(server.request_count(), 0);
+}
+
+/// Sets the variables by which a proxy is named, for as long as it lives.
+class ProxyVariables {
+ public:
+  explicit ProxyVariables(const std::string& url) {
+    for (const char* name : kNames) setenv(name, url.c_str(), 1);
+  }
+  ~ProxyVariables() {
+    for (const char* name : kNames) unsetenv(name);
+  }
+  ProxyVariables(const ProxyVariables&) = delete;
+  ProxyVariables& operator=(const ProxyVariables&) = delete;
+
+ private:
+  static constexpr const char* kNames[] = {
+      "http_proxy", "https_proxy", "HTTPS_PROXY", "all_proxy", "ALL_PROXY"};
+};
+
+TEST(ProviderSecurityTest, NoProxySeesWhatGoesToThisMachine) {
+  ScriptedLlmServer proxy({Good("chat", "from the proxy")});
+  ScriptedLlmServer server({Good("chat", "from the server")});
+  const ProxyVariables variables(proxy.url());
+  setenv("TERRA_CHAT_API_KEY", kSecret, 1);
+  const std::string port = std::to_string(server.port());
+  for (const char* base :
+       {"http://127.0.0.1:", "HTTP://127.0.0.1:", "Http://127.0.0.1:",
+        "http://localhost:", "HTTP://LOCALHOST:"}) {
+    EXPECT_EQ(Client("chat", base + port)->Ask(Question(), {}).text,
+              "from the server")
+        << base;
+  }
+  unsetenv("TERRA_CHAT_API_KEY");
+  EXPECT_EQ(server.request_count(), 5);
+  EXPECT_EQ(proxy.request_count(), 0);
+  // And the proxy is one: what goes elsewhere asks it first.
+  HttpTransport http;
+  HttpRequest elsewhere;
+  elsewhere.url = "HTTPS://example.invalid";
+  elsewhere.timeout_s = 5;
+  EXPECT_NE(http.Post(elsewhere, {}).fault, TransportFault::kNone);
+  EXPECT_EQ(proxy.request_count(), 1);
+}
+
+TEST(ProviderSecurityTest, HeaderNamesAreReadInAnyCase) {
+  ScriptedReply busy = Failing(503, "RETRY-AFTER-MS", "1");
+  ScriptedLlmServer server({busy, Good("chat")});
+  EXPECT_EQ(Client("chat", server.url())->Ask(Question(), {}).tries, 2);
+  ScriptedReply final_one = Failing(503, "X-Should-Retry", "false");
+  ScriptedLlmServer other({final_one});
+  EXPECT_EQ(Client("chat", other.url())->Ask(Question(), {}).tries, 1);
 }
 
 TEST(ProviderSecurityTest, RedirectsAreNotFollowed) {
@@ -166,11 +218,15 @@ TEST(ProviderSecurityTest, PlainHttpIsForThisMachineOnly) {
   EXPECT_EQ(CheckBaseUrl("http://localhost").value(), "loopback");
   EXPECT_EQ(CheckBaseUrl("http://[::1]:5").value(), "loopback");
   EXPECT_EQ(CheckBaseUrl("https://example.org").value(), "other");
+  EXPECT_EQ(CheckBaseUrl("HTTP://LocalHost:80").value(), "loopback");
+  EXPECT_EQ(CheckBaseUrl("HTTPS://LOCALHOST").value(), "loopback")
+      << "or a program that plays a model would pass for one";
   for (const char* bad :
        {"http://example.org", "http://127.0.0.1.example.org",
-        "http://localhost.example.org", "ftp://127.0.0.1", "file:///etc/passwd",
-        "https://user:secret@example.org", "https://example.org/?key=secret",
-        "", "http://"}) {
+        "http://localhost.example.org", "http://127.0.0.1.2.3", "http://127.",
+        "HTTP://EXAMPLE.ORG", "ftp://127.0.0.1", "FILE:///etc/passwd",
+        "file:///etc/passwd", "https://user:secret@example.org",
+        "https://example.org/?key=secret", "", "http://"}) {
     EXPECT_FALSE(CheckBaseUrl(bad).ok()) << bad;
   }
 }

@@ -205,6 +205,63 @@ TEST_F(ExchangeTest, ATooLargeAnswerIsNone) {
   EXPECT_EQ(client_.Ask(request, {}).reason, NoAnswer::kTooLarge);
 }
 
+struct Encoding {
+  std::string name;
+  std::string bytes;
+  std::string hint;
+};
+
+TEST_F(ExchangeTest, AnAnswerInAnotherEncodingGetsAHint) {
+  const std::string utf16("\xff\xfeY\0e\0s\0", 8);
+  for (const Encoding& tested :
+       {Encoding{"utf16", utf16, "UTF-16"},
+        Encoding{"utf16-without-mark", utf16.substr(2), "UTF-16"},
+        Encoding{"utf16-big", std::string("\xfe\xff\0Y\0e\0s", 8), "UTF-16"},
+        Encoding{"latin-1",
+                 "Yes, \xe7"
+                 "a va",
+                 "Latin-1"}}) {
+    const LlmRequest request = Question(tested.name);
+    fs::create_directories(FolderOf(request));
+    std::ofstream(FolderOf(request) / "answer.txt") << tested.bytes;
+    const LlmReply reply = client_.Ask(request, {});
+    EXPECT_EQ(reply.status, ReplyStatus::kAnswered);
+    EXPECT_THAT(reply.error, HasSubstr(tested.hint)) << tested.name;
+    EXPECT_THAT(reply.error, HasSubstr("save it as UTF-8")) << tested.name;
+  }
+  const LlmRequest request = Question("utf8");
+  fs::create_directories(FolderOf(request));
+  std::ofstream(FolderOf(request) / "answer.txt") << "\ufeffYes, \u00e7a va";
+  EXPECT_EQ(client_.Ask(request, {}).error, "");
+}
+
+TEST_F(ExchangeTest, ABlankAnswerIsWaitedForAndThatIsSaidOnce) {
+  for (const char* blank : {"", "\n", "\ufeff\r\n"}) {
+    const LlmRequest request = Question(std::string("blank") + blank);
+    const fs::path answer = FolderOf(request) / "answer.txt";
+    fs::create_directories(FolderOf(request));
+    std::ofstream(answer) << blank;
+    ::testing::internal::CaptureStderr();
+    options_.deadline_s = 0.1;
+    const LlmReply none = ExchangeClient(options_).Ask(request, {});
+    const std::string said = ::testing::internal::GetCapturedStderr();
+    EXPECT_EQ(none.reason, NoAnswer::kDeadline);
+    EXPECT_THAT(none.error, HasSubstr("it is empty"));
+    EXPECT_THAT(said, HasSubstr(answer.string() + ": is empty"));
+    EXPECT_EQ(said.find("is empty"), said.rfind("is empty")) << said;
+    std::ofstream(answer) << "Yes";
+    EXPECT_EQ(client_.Ask(request, {}).text, "Yes");
+  }
+}
+
+TEST_F(ExchangeTest, ThinkingInAnAnswerIsLeftOut) {
+  const LlmRequest request = Question("a");
+  fs::create_directories(FolderOf(request));
+  std::ofstream(FolderOf(request) / "answer.txt")
+      << "No. [(1, 1)] hits a wall.\n</think>\n\nYes";
+  EXPECT_EQ(client_.Ask(request, {}).text, "\n\nYes");
+}
+
 TEST_F(ExchangeTest, AFolderThatCannotBeWrittenIsSaid) {
   ExchangeOptions options = options_;
   options.folder = folder_.Write("file", "in the way");

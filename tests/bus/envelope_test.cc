@@ -1,8 +1,13 @@
 #include "bus/envelope.h"
 
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "terrain/utf8.h"
+#include "tests/bus/sample_messages.h"
 
 namespace terra::bus {
 namespace {
@@ -55,6 +60,101 @@ TEST(SenderTrackerTest, AnySeqIsTaken) {
     EXPECT_EQ(tracker.Look(session, kMost), Sender::kCurrent);
     EXPECT_EQ(tracker.Look(session, kMost), Sender::kRepeated);
   }
+}
+
+/// Keeps what is sent.
+class Kept : public Transport {
+ public:
+  bool Publish(Channel, std::span<const std::uint8_t> bytes) override {
+    last.assign(bytes.begin(), bytes.end());
+    return bytes.size() <= kMaxMessageBytes;
+  }
+
+  std::vector<std::uint8_t> last;
+};
+
+/// Zero bytes, no UTF-8, control characters, and more than fits.
+const std::string& Hostile() {
+  static const std::string text = [] {
+    std::string hostile("a\0b\xff\xe2\x82\x1b[2J\r\n\x7f", 14);
+    return hostile + std::string(70'000, '\xe9');
+  }();
+  return text;
+}
+
+/// Sends a message and returns it as others hear it.
+template <typename T>
+T Heard(T message) {
+  Kept kept;
+  Outbox out(kept, 7);
+  EXPECT_TRUE(out.Send(message)) << "too large";
+  const Result<T> heard = Decode<T>(kept.last);
+  EXPECT_TRUE(heard.ok());
+  return heard.ok() ? *heard : T{};
+}
+
+void ExpectClean(const std::string& text) {
+  EXPECT_TRUE(text.starts_with("a\uFFFDb\uFFFD")) << text.substr(0, 20);
+  EXPECT_TRUE(IsUtf8(text));
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+  EXPECT_EQ(text.find('\0'), std::string::npos);
+}
+
+// Whatever a model, a file or another process says, it can be told.
+TEST(OutboxTest, NoTextMakesAdviceUnfitToBeSent) {
+  auto message = testing::Sample<terra_msg::advice_t>();
+  message.advisor = message.method = message.backend = message.model =
+      message.request_hash = message.answer_text = message.advice_error =
+          Hostile();
+  const auto heard = Heard(message);
+  for (const std::string& text :
+       {heard.advisor, heard.method, heard.backend, heard.model,
+        heard.request_hash, heard.answer_text, heard.advice_error}) {
+    ExpectClean(text);
+  }
+  EXPECT_LE(heard.model.size(), kMaxNameBytes);
+  EXPECT_LE(heard.answer_text.size(), kMaxAnswerBytes);
+}
+
+TEST(OutboxTest, NoTextMakesAnyOtherMessageUnfitToBeSent) {
+  auto status = testing::Sample<terra_msg::status_t>();
+  status.status_name = status.host = status.state = status.build_id =
+      status.last_error = status.counter_name.front() = Hostile();
+  const auto status_heard = Heard(status);
+  ExpectClean(status_heard.status_name);
+  ExpectClean(status_heard.host);
+  ExpectClean(status_heard.state);
+  ExpectClean(status_heard.build_id);
+  ExpectClean(status_heard.last_error);
+  ExpectClean(status_heard.counter_name.front());
+  EXPECT_EQ(status_heard.state.find('\n'), std::string::npos);
+
+  auto config = testing::Sample<terra_msg::config_t>();
+  config.config_name = config.build_id = config.config_text = Hostile();
+  const auto config_heard = Heard(config);
+  ExpectClean(config_heard.config_name);
+  ExpectClean(config_heard.build_id);
+  ExpectClean(config_heard.config_text);
+
+  auto header = testing::Sample<terra_msg::map_header_t>();
+  header.terrain_name.front() = Hostile();
+  ExpectClean(Heard(header).terrain_name.front());
+
+  auto mark = testing::Sample<terra_msg::log_mark_t>();
+  mark.mark_text = Hostile();
+  ExpectClean(Heard(mark).mark_text);
+
+  auto baseline = testing::Sample<terra_msg::baseline_t>();
+  baseline.planner = Hostile();
+  ExpectClean(Heard(baseline).planner);
+
+  auto verdict = testing::Sample<terra_msg::verdict_t>();
+  verdict.advisor = Hostile();
+  ExpectClean(Heard(verdict).advisor);
+
+  auto deployed = testing::Sample<terra_msg::deployed_t>();
+  deployed.source = Hostile();
+  ExpectClean(Heard(deployed).source);
 }
 
 TEST(RandomIdTest, IsNeverZeroAndDiffers) {

@@ -293,8 +293,23 @@ TEST(EncodeTest, TheLargestMapHeaderFitsOneMessage) {
   EXPECT_LE(Encode(message).size(), kMaxMessageBytes);
 }
 
-TEST(CleanTextTest, DropsZeroBytes) {
-  EXPECT_EQ(CleanText(std::string_view("a\0b", 3), 10), "ab");
+TEST(CleanTextTest, ShowsWhereBytesWereThatNoTextMayHold) {
+  EXPECT_EQ(CleanText(std::string_view("a\0b", 3), 10), "a\uFFFDb");
+  EXPECT_EQ(CleanText("a\x1b[2J\x7f", 99), "a\uFFFD[2J\uFFFD");
+  EXPECT_EQ(CleanText("caf\xe9!", 99), "caf\uFFFD!") << "Latin-1";
+  EXPECT_EQ(CleanText("a\xe2\x82", 99), "a\uFFFD\uFFFD") << "a cut character";
+  EXPECT_EQ(CleanText("\xc2\x9b", 99), "\uFFFD") << "a C1 control character";
+}
+
+TEST(CleanTextTest, LeavesTextsAsTheyAre) {
+  for (const char* text :
+       {"", "No.\n\t[(1, 2)]\r\n", "caf\u00e9 \u20ac \U0001F916"}) {
+    EXPECT_EQ(CleanText(text, 99), text);
+  }
+}
+
+TEST(CleanTextTest, ANameHasOneLine) {
+  EXPECT_EQ(CleanLine("a\nSTOPPING=1\tb\r", 99), "a STOPPING=1 b ");
 }
 
 TEST(CleanTextTest, CutsBetweenCharacters) {

@@ -128,6 +128,39 @@ save("answers", "batch", b'\x09{"custom_id":"ab-0","response":{"status_code":'
 save("answers", "batch_error", b'\x09{"custom_id":"ab-0","result":{"type":'
      b'"errored","error":{"type":"invalid_request"}}}')
 
+save("model_answer", "chat", b'\x03{"choices":[{"message":{"content":"No. '
+     b'[(1, 1), (1, 8), (14, 9)]"},"finish_reason":"stop"}],"model":"m"}')
+save("model_answer", "chat_zero_byte", b'\x03{"choices":[{"message":{"content":'
+     b'"Yes\\u0000"}}],"model":"a\\u0000\\u001b[2J"}')
+save("model_answer", "chat_failure_inside", b'\x03{"choices":[{"error":{"code":'
+     b'502,"message":"a\\u0000b"},"finish_reason":"error"}]}')
+save("model_answer", "chat_thinking", b'\x03{"choices":[{"message":{"content":'
+     b'"No. [(1, 1)].\\n</think>\\n\\nYes"}}]}')
+save("model_answer", "chat_no_choice", b'\x03{"choices":[]}')
+save("model_answer", "chat_status", b'\x0f{"error":{"message":"slow\\u0000"}}')
+save("model_answer", "openai", b'\0{"id":"r1","status":"completed","output":'
+     b'[{"type":"message","content":[{"type":"output_text","text":"Yes"}]}]}')
+save("model_answer", "openai_key", b'\0{"status":"completed","output":[{"type":'
+     b'"message","content":[{"type":"refusal","refusal":"sk-fuzz-0123456789"}]}]}')
+save("model_answer", "gemini_route", b'\x21{"candidates":[{"content":{"parts":[{'
+     b'"text":"[(1, 1), (14, 9)]"}]},"finishReason":"STOP"}]}')
+save("model_answer", "gemini_targets", b'\x31{"candidates":[{"content":{"parts":'
+     b'[{"text":"[(1, 8)]"}]},"finishReason":"STOP"}]}')
+save("model_answer", "anthropic", b'\x02{"content":[{"type":"text","text":'
+     b'"Yes\\u00a0"}],"stop_reason":"end_turn"}')
+save("model_answer", "anthropic_stream", b'\x02data: {"type":"error","error":{'
+     b'"type":"overloaded_error","message":"Overloaded"}}\n\n')
+
+save("exchange", "yes", b"Yes\n")
+save("exchange", "route", b"No. [(1, 1), (1, 8), (14, 9)]\n")
+save("exchange", "zero_byte", b"No. [(1, 1), (1\0, 8), (14, 9)]")
+save("exchange", "utf16", "No. [(1, 1), (14, 9)]".encode("utf-16"))
+save("exchange", "latin1", "Yes, \u00e7a va".encode("latin-1"))
+save("exchange", "cut_character", "Yes \u20ac".encode()[:-1])
+save("exchange", "terminal", b"\x1b[2J\x1b]0;title\x07 No.\xc2\x9b")
+save("exchange", "blank", b"\xef\xbb\xbf\n")
+save("exchange", "thinking", b"No. [(1, 1)]\n</think>\n\nYes")
+
 save("config", "advisor", b'\0backend="chat"\nrobot="R1"\npolish=false\n'
      b'lcm-url="udpm://239.255.76.67:7667?ttl=0"\n')
 save("config", "unknown_key", b"\0no-such-option=1\n")

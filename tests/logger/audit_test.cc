@@ -70,6 +70,29 @@ TEST(Audit, EveryDecisionOfARandomRunIsMadeAgain) {
   }
 }
 
+// Anybody may call himself anything; the gate repeats it as a message may.
+TEST(Audit, AnAdvisorsNameThatIsNoTextChangesNoFinding) {
+  RecordedRun run;
+  run.StartMap();
+  run.StartPlanner();
+  run.StartGate();
+  run.Run(std::chrono::seconds(1));
+  run.Ask(11);
+  const auto baseline = run.Baseline();
+  ASSERT_TRUE(baseline);
+  advice_t advice = run.AdviceFor(
+      *baseline, {RecordedRun::kStart, {80, 10}, RecordedRun::kGoal});
+  advice.kind = advice_t::KIND_PROPOSE;
+  advice.advisor = "\x1b[2J\xff\n";
+  run.Inject(advice);
+  const auto verdicts = Said<verdict_t>(run.messages());
+  ASSERT_FALSE(verdicts.empty());
+  EXPECT_EQ(verdicts.back().advisor, "\uFFFD[2J\uFFFD ");
+  const Audit audit = AuditOf(run.messages());
+  EXPECT_TRUE(audit.clean()) << Text(audit);
+  EXPECT_GT(audit.verdicts, 0);
+}
+
 TEST(Audit, TheOrderOfTheLogDoesNotMatter) {
   Messages messages = EventfulRun();
   // Advice is heard by another socket, so it may be logged after its verdict.

@@ -107,6 +107,30 @@ std::vector<Fault> Faults() {
   add("chatter", kMalformed, "no_list") = Saying("What a nice map!");
   add("fractions", kMalformed, "not_an_integer") =
       Saying("No. [(5.0, 60), (155, 60)]");
+  // What no message may hold: JSON has escapes for all of it.
+  add("zero byte after a Yes", kMalformed, "yes_not_alone") =
+      Saying(std::string("Yes\0", 4));
+  add("zero byte in a route", kMalformed, "not_a_pair") =
+      Saying(std::string("No. [(5, 60), (70\0, 28), (155, 60)]", 35));
+  add("control characters", kMalformed, "no_list") =
+      Saying("\x1b[2J\x1b]0;title\x07 \u009b \x7f");
+  add("endless answer", kMalformed, "too_long") =
+      Saying(std::string(70'000, 'x') + "\u20ac");
+  add("zero byte in a model's name", kPropose, "").body =
+      R"({"model":"a\u0000b\u001b[2J","choices":[{"message":{"content":)"
+      R"("No. [(5, 60), (70, 28), (90, 28), (155, 60)]"}}]})";
+  add("zero byte in a refusal", kMalformed, "refused").body =
+      R"({"choices":[{"finish_reason":"stop",
+          "message":{"content":"","refusal":"a\u0000b"}}]})";
+  ScriptedReply& error = add("zero byte in an error", kFailed, "http_status");
+  error.status = 400;
+  error.body = R"({"error":{"message":"a\u0000b"}})";
+  add("failure in place of the answer", kFailed, "bad_reply").body =
+      R"({"choices":[{"finish_reason":"error","error":{"code":502,
+          "message":"no instance"},"message":{"content":"No"}}]})";
+  add("no choice", kFailed, "bad_reply").body = R"({"choices":[]})";
+  add("thinking without its beginning", kPropose, "") = Saying(
+      std::string("No. [(5, 60)] hits a wall.\n</think>\n\n") + kCheaperAnswer);
   return faults;
 }
 
@@ -241,6 +265,15 @@ TEST_F(LlmAdvisor, HeartbeatTellsCallsTokensAndLatency) {
                CounterOf(message, "tokens_out") == 20 &&
                CounterOf(message, "llm_p95_ms") > 0;
       }));
+}
+
+TEST_F(LlmAdvisor, ANameThatNoMessageMayHoldIsRefused) {
+  for (const std::string name : {"a\nb", "\x1b[2J", "caf\xe9"}) {
+    const auto ended = testing::RunToEnd(
+        {testing::ProgramPath("terra-advisor"), "--name", name});
+    EXPECT_EQ(ended.exit_code, 2) << ended.output;
+    EXPECT_NE(ended.output.find("UTF-8"), std::string::npos) << ended.output;
+  }
 }
 
 TEST_F(LlmAdvisor, AMissingKeyIsSaidAtTheStart) {

@@ -115,6 +115,24 @@ TEST_F(SimulatedModel, RefusesWhatIsNoQuestionAndGoesOn) {
   EXPECT_EQ(server_->Terminate(), 0);
 }
 
+/// Waits for a question in the folder; returns its own folder.
+fs::path WaitForQuestion(const fs::path& folder) {
+  fs::path question;
+  EXPECT_TRUE(WaitUntil([&] {
+    std::error_code not_yet;
+    for (const auto& entry : fs::directory_iterator(folder, not_yet)) {
+      if (fs::exists(entry.path() / "prompt.txt")) question = entry.path();
+    }
+    return !question.empty();
+  }));
+  return question;
+}
+
+void Answer(const fs::path& question, const std::string& bytes) {
+  std::ofstream(question / "part") << bytes;
+  fs::rename(question / "part", question / "answer.txt");
+}
+
 TEST(Exchange, WhoeverAnswersFromFilesAdvisesTheRobot) {
   Robot robot(BarMap());
   const fs::path folder = robot.folder().Path("exchange");
@@ -126,14 +144,8 @@ TEST(Exchange, WhoeverAnswersFromFilesAdvisesTheRobot) {
   ASSERT_TRUE(first);
   EXPECT_EQ(first->mode, deployed_t::MODE_BASELINE);
 
-  fs::path question;
-  ASSERT_TRUE(WaitUntil([&] {
-    std::error_code not_yet;
-    for (const auto& entry : fs::directory_iterator(folder, not_yet)) {
-      if (fs::exists(entry.path() / "prompt.txt")) question = entry.path();
-    }
-    return !question.empty();
-  }));
+  const fs::path question = WaitForQuestion(folder);
+  ASSERT_FALSE(question.empty());
   EXPECT_NE(question.filename().string().front(), '-') << "awkward in a shell";
   EXPECT_THAT(ReadBytes(folder / "README.txt"), HasSubstr("answer.txt"));
   EXPECT_THAT(ReadBytes(question / "prompt.txt"), HasSubstr("Start: (5, 60)"));
@@ -141,11 +153,67 @@ TEST(Exchange, WhoeverAnswersFromFilesAdvisesTheRobot) {
     EXPECT_EQ(ReadBytes(question / name).substr(1, 3), "PNG") << name;
   }
 
-  std::ofstream(question / "part") << kCheaperAnswer << "\n";
-  fs::rename(question / "part", question / "answer.txt");
+  Answer(question, std::string(kCheaperAnswer) + "\n");
   const auto deployed = robot.WaitForDeployed(11, deployed_t::MODE_CANDIDATE);
   ASSERT_TRUE(deployed);
   EXPECT_EQ(deployed->source, "person");
+}
+
+struct WrittenAnswer {
+  std::string name;
+  std::string bytes;
+  std::string shown;  ///< What the advice says it was.
+  std::string hint;
+};
+
+// The answer stays in its folder: an advisor that it ended would end at each
+// start.
+TEST(Exchange, NoAnswerEndsTheAdvisorNowOrWhenItStartsAgain) {
+  Robot robot(BarMap());
+  const fs::path folder = robot.folder().Path("exchange");
+  const auto start = [&] {
+    robot.Start("person", {"--backend", "exchange", "--exchange", folder});
+  };
+  robot.Start("map");
+  robot.Start("planner", {"--stride", "20"});
+  robot.Start("verifier");
+  start();
+  std::int64_t request_id = 10;
+  ASSERT_TRUE(robot.Ask(++request_id, kBarStart, kBarGoal));
+  const fs::path question = WaitForQuestion(folder);
+  ASSERT_FALSE(question.empty());
+  for (const WrittenAnswer& answer :
+       {WrittenAnswer{"zero byte",
+                      std::string("No. [(5, 60), (70\0, 28), (155, 60)]", 35),
+                      "(70\uFFFD, 28)", "zero bytes"},
+        WrittenAnswer{"UTF-16", std::string("\xff\xfeY\0e\0s\0", 8),
+                      "\uFFFD\uFFFDY\uFFFDe", "UTF-16"},
+        WrittenAnswer{"Latin-1",
+                      "Oui, \xe7"
+                      "a va",
+                      "Oui, \uFFFDa", "Latin-1"},
+        WrittenAnswer{"terminal", "\x1b[2J", "\uFFFD[2J", "no_list"}}) {
+    SCOPED_TRACE(answer.name);
+    robot.Kill("person");
+    Answer(question, answer.bytes);
+    for (int starts = 0; starts < 2; ++starts) {
+      robot.advice_bus().Forget();
+      start();
+      const auto advice =
+          robot.advice_bus().WaitFor<advice_t>([](const advice_t& message) {
+            return message.advisor == "person";
+          });
+      ASSERT_TRUE(advice);
+      EXPECT_EQ(int{advice->kind}, int{advice_t::KIND_MALFORMED});
+      EXPECT_THAT(advice->answer_text, HasSubstr(answer.shown));
+      EXPECT_THAT(advice->advice_error, HasSubstr(answer.hint));
+      EXPECT_TRUE(robot.process("person").running());
+      robot.Kill("person");
+    }
+  }
+  Answer(question, kCheaperAnswer);
+  start();
+  EXPECT_TRUE(robot.WaitForDeployed(request_id, deployed_t::MODE_CANDIDATE));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "benchmark/missing_rows.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "benchmark/run_labels.h"
@@ -56,10 +57,12 @@ bool IsMeasured(const std::vector<LoadedRun>& runs, const std::string& method,
 void AddMissing(const std::vector<LoadedRun>& runs,
                 const std::vector<std::string>& groups, Table& table,
                 const std::string& more, const std::string& suffix) {
+  std::vector<LoadedRun> plain;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(plain), IsPlain);
   TableBlock missing;
   missing.heading = kMissingHeading;
   for (const PaperRow& row : kPaperMethods) {
-    if (IsMeasured(runs, row.method, row.backend, groups)) continue;
+    if (IsMeasured(plain, row.method, row.backend, groups)) continue;
     missing.rows.push_back(
         {row.title, HowToMeasure(row.method, row.backend, more, suffix)});
   }

@@ -24,8 +24,8 @@ bool IsMeasured(const std::vector<LoadedRun>& runs, const std::string& method,
                 const std::string& provider,
                 const std::vector<std::string>& groups);
 
-/// Adds a block with the rows of the paper that no run here stands for, if
-/// there is one.
+/// Adds a block with the rows of the paper's main tables that no plain run here
+/// stands for, if there is one.
 void AddMissing(const std::vector<LoadedRun>& runs,
                 const std::vector<std::string>& groups, Table& table,
                 const std::string& more = "", const std::string& suffix = "");

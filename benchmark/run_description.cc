@@ -94,7 +94,8 @@ void ReadConfiguration(const ordered_json& c, RunDescription& d) {
 std::string UnknownField(const ordered_json& configuration) {
   ordered_json others = configuration;
   others.erase("settings");
-  for (const auto& [path, value] : others.flatten().items()) {
+  const ordered_json flat = others.flatten();
+  for (const auto& [path, value] : flat.items()) {
     if (FindField("/configuration" + path) == nullptr) {
       return "/configuration" + path;
     }

@@ -214,9 +214,8 @@ TEST_F(BenchCommand, EachTableOfAReportIsOneCommand) {
   // fallback, some cases one at a time, another dataset.
   const auto run = [&](const std::string& out,
                        std::vector<std::string> options) {
-    options.insert(options.begin(),
-                   {terra_, "bench", "run", "--out",
-                    folder_.Path("runs/" + out), "--jobs", "2"});
+    options.insert(options.begin(), {terra_, "bench", "run", "--out",
+                                     folder_.Path("runs/" + out)});
     const RunResult ran = RunToEnd(options);
     ASSERT_EQ(ran.exit_code, 0) << ran.output;
   };
@@ -308,7 +307,7 @@ TEST_F(BenchCommand, EveryOptionOfARunIsAFieldOfRunJsonOrDecidesNoFigure) {
       "--exchange", "--recording"};
   const RunResult help = RunToEnd({terra_, "bench", "run", "--help"});
   const std::regex option(R"(\n +(?:-\w,)?(--[a-z-]+))");
-  int met = 0;
+  std::size_t met = 0;
   for (std::sregex_iterator it(help.output.begin(), help.output.end(), option);
        it != std::sregex_iterator(); ++it, ++met) {
     const std::string name = (*it)[1];

@@ -319,9 +319,11 @@ TEST(OracleGapTable, MixesInNeitherNoiseNorAblation) {
   EXPECT_THAT(table.notes.back(),
               AllOf(HasSubstr("noisy: "), HasSubstr("bare: ")));
   const Selection s = SelectRuns(runs).value();
-  EXPECT_THAT(Folders(s.gap), ElementsAre("full"));
-  ASSERT_EQ(s.others.size(), 1U);
-  EXPECT_THAT(Folders(s.others.front()), ElementsAre("other stride"));
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("full"));
+  EXPECT_THAT(Folders(s.gap), ElementsAre("full", "other stride"));
+  EXPECT_THAT(Folders(s.ablation), ElementsAre("full", "bare"));
+  EXPECT_THAT(Folders(s.noise), ElementsAre("full", "noisy"));
+  EXPECT_THAT(s.others, IsEmpty());
 }
 
 TEST(OracleGapTable, NamesThePapersRowsThatWereNotMeasured) {

@@ -77,8 +77,8 @@ TEST_F(RunFieldsTest, EveryFieldThatIsWrittenIsDeclaredAndTheOtherWayRound) {
   std::set<std::string_view> met;
   for (const char* backend :
        {"openai", "gemini", "anthropic", "chat", "exchange", "replay"}) {
-    for (const auto& [path, value] :
-         Written(Described(backend)).flatten().items()) {
+    const json flat = Written(Described(backend)).flatten();
+    for (const auto& [path, value] : flat.items()) {
       if (value.is_null()) continue;  // An empty object or array.
       const RunField* field = FindField(path);
       EXPECT_NE(field, nullptr)

@@ -5,6 +5,8 @@
 
 #include "benchmark/comparison.h"
 #include "benchmark/measured_columns.h"
+#include "benchmark/missing_rows.h"
+#include "benchmark/run_fields.h"
 #include "benchmark/run_labels.h"
 
 namespace terra::benchmark {
@@ -21,7 +23,7 @@ std::string ShortDigest(const RunDescription& d) {
 
 // May its answers have several candidates?
 bool HasCandidates(const LoadedRun& run) {
-  return SettingOf(run, "candidates", "1") != "1";
+  return SettingOf(run, "candidates") != "1";
 }
 
 // Without an interval.
@@ -126,10 +128,10 @@ Result<Table> PairedTable(const std::vector<LoadedRun>& runs,
     table.title =
         "Paired by case against: " + RowTitle(reference) + " (" + group + ")";
     for (std::size_t i = 1; i < runs.size(); ++i) {
-      const Result<Comparison> c = ComparePaired(
-          ReaderOfGroup(runs[i], group), runs[i].description.rule,
-          ReaderOfGroup(reference, group), reference.description.rule,
-          reference.num_rows);
+      const Result<Comparison> c =
+          ComparePaired(ReaderOfGroup(runs[i], group), runs[i].description.rule,
+                        ReaderOfGroup(reference, group),
+                        reference.description.rule, reference.num_rows);
       if (!c.ok()) return c.error();
       if (c->cases > 0) block.rows.push_back(PairedRow(runs[i], *c));
     }
@@ -159,14 +161,18 @@ Table JointsTable(const std::vector<LoadedRun>& runs) {
       "lattice";
   table.columns = HeadsOf(columns);
   TableBlock block;
+  const auto has_row = [](const LoadedRun& run) {
+    return run.description.method == "coarse";
+  };
   for (const LoadedRun& run : runs) {
-    if (run.description.method == "coarse") AddRows(run, columns, block);
+    if (has_row(run)) AddRows(run, columns, block);
   }
   table.blocks.push_back(std::move(block));
   table.notes = {
       "2r: nodes within two strides (this project's choice). cell: "
       "the corners of the enclosing lattice cell. visible: every "
       "node that a feasible segment reaches."};
+  NoteWithoutRow(runs, has_row, "rows of method coarse alone", table);
   return table;
 }
 
@@ -189,8 +195,8 @@ Table RunsTable(const std::vector<LoadedRun>& runs) {
   for (const LoadedRun& run : runs) {
     const RunDescription& d = run.description;
     const std::string recorded = d.recorded.Days();
-    block.rows.push_back({RowTitle(run), run.folder,
-                          DatasetTitle(d) + " " + ShortDigest(d),
+    block.rows.push_back({RowTitle(run, {kStrideField, kJointsField}),
+                          run.folder, DatasetTitle(d) + " " + ShortDigest(d),
                           CountCell(run.num_rows), CountCell(d.stride),
                           d.joints, CountCell(d.jobs), d.build_id,
                           d.started.empty() ? "" : d.started.front(),

@@ -10,7 +10,7 @@
 namespace terra::benchmark {
 
 /// What the paper does not print: proposal quality in full, with recovery.
-/// Pre: comparable runs (WhyNotComparable).
+/// Pre: comparable runs (FindMismatch).
 Table ProposalTable(const std::vector<LoadedRun>& runs,
                     const std::string& group);
 /// Every run against the first one of these, paired by case.

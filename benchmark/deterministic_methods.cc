@@ -149,7 +149,6 @@ MethodChoice Choose(std::string_view method, std::string_view backend,
   if (gate && !info.rule.fallback) {
     info.rule.fallback = true;
     info.uses_baseline = true;
-    info.title += " + gate";
   }
   return {std::move(info),
           [plan = planner.plan]() -> Result<std::unique_ptr<Method>> {
@@ -172,6 +171,20 @@ std::string WhyNoMethod(std::string_view method, std::string_view backend) {
 }
 
 }  // namespace
+
+std::optional<bool> FallsBack(std::string_view method) {
+  if (method == "advisor") return true;
+  if (advisor::FindMethod(method)) return false;
+  for (const NamedPlanner& planner : PlainMethods()) {
+    if (planner.name == method) return planner.rule.fallback;
+  }
+  return std::nullopt;
+}
+
+std::string TitleWithGate(const MethodInfo& info) {
+  const bool given = info.rule.fallback && FallsBack(info.method) == false;
+  return info.title + (given ? " + gate" : "");
+}
 
 Result<MethodChoice> FindDeterministicMethod(std::string_view method,
                                              std::string_view backend,

@@ -153,9 +153,7 @@ MethodInfo InfoOf(const advisor::LlmBackendOptions& options,
   info.method = std::string(advisor::MethodName(options.method.method)) +
                 (form.single_search ? "-single" : "");
   info.backend = options.service.backend;
-  info.title = TitleOf(options.method.method, form.single_search) +
-               (form.polish ? " + polish" : "") +
-               (form.gate && !advisor ? " + gate" : "");
+  info.title = TitleOf(options.method.method, form.single_search);
   info.rule = {.fallback = advisor || form.gate,
                .every_case_attempts = !advisor};
   info.uses_baseline = info.rule.fallback;
@@ -184,6 +182,7 @@ std::string SettingsJson(const MethodOptions& options,
       {"stretches", prompt.stretches},
       {"candidates", prompt.candidates},
       {"rounds", options.rounds},
+      {"rounds_deadline_s", options.rounds_deadline_s},
       {"noise", options.noise_percent},
       {"seed", options.seed},
       {"polish", polish}};
@@ -220,8 +219,7 @@ Result<LlmMethodChoice> MakeLlmMethod(const advisor::LlmBackendOptions& options,
   MethodOptions method = options.method;
   method.rounds_deadline_s = options.service.provider.deadline_s;
   LlmMethodChoice made;
-  made.settings_json =
-      SettingsJson(options.method, identity, pool, form.polish);
+  made.settings_json = SettingsJson(method, identity, pool, form.polish);
   made.choice.info = InfoOf(options, identity, form);
   // The one client goes to whoever makes the method first.
   auto held = std::make_shared<advisor::LlmService>(*std::move(service));

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "benchmark/hidden_path.h"
 #include "benchmark/integer_random.h"
 #include "benchmark/results_reader.h"
 
@@ -14,10 +15,6 @@ namespace terra::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool IsRun(const fs::path& folder) {
-  return fs::exists(folder / "run.json");
-}
 
 Result<LoadedRun> LoadRun(const std::string& folder) {
   LoadedRun run;
@@ -132,6 +129,55 @@ Result<std::string> DifferentCase(const LoadedRun& a, const LoadedRun& b) {
   return std::string();
 }
 
+// Whether two runs have the same of what rows of a table share.
+struct SharedValue {
+  Shared what;
+  std::string name;
+  bool same;
+};
+
+std::vector<SharedValue> SharedValues(const LoadedRun& a, const LoadedRun& b) {
+  const RunDescription& x = a.description;
+  const RunDescription& y = b.description;
+  return {{Shared::kDataset, "dataset", x.dataset_digest == y.dataset_digest},
+          {Shared::kCaseList, "case list",
+           x.case_list_digest == y.case_list_digest},
+          {Shared::kStride, "stride", x.stride == y.stride},
+          {Shared::kJoints, "joint rule", x.joints == y.joints},
+          {Shared::kCostModel, "cost model",
+           x.corner_cutting == y.corner_cutting &&
+               x.clearance_cells == y.clearance_cells}};
+}
+
+std::optional<Mismatch> MismatchIn(Shared what, const std::string& name,
+                                   const LoadedRun& a, const LoadedRun& b) {
+  return Mismatch{what,
+                  a.folder + " and " + b.folder + " differ in their " + name};
+}
+
+Result<std::vector<std::string>> RunsBelow(const std::string& folder) {
+  std::vector<std::string> below;
+  std::error_code failed;
+  fs::recursive_directory_iterator it(folder, failed);
+  for (const fs::recursive_directory_iterator end; !failed && it != end;
+       it.increment(failed)) {
+    std::error_code unknown;
+    if (!it->is_directory(unknown)) continue;
+    if (IsHidden(it->path())) {
+      it.disable_recursion_pending();
+    } else if (IsRunFolder(it->path().string())) {
+      below.push_back(it->path().string());
+    }
+  }
+  if (failed) {
+    return Error{
+        ErrorCode::kUnavailable,
+        folder + ": not all below it can be read: " + failed.message()};
+  }
+  std::sort(below.begin(), below.end());
+  return below;
+}
+
 // In ascending order.
 using Keys = std::vector<std::uint64_t>;
 
@@ -194,67 +240,67 @@ bool LoadedRun::complete() const {
          num_rows == description.num_cases * description.repeats;
 }
 
+bool IsRunFolder(const std::string& folder) {
+  std::error_code failed;
+  return fs::is_regular_file(fs::path(folder) / "run.json", failed);
+}
+
 Result<std::vector<std::string>> FindRuns(
     const std::vector<std::string>& folders) {
   std::vector<std::string> found;
   for (const std::string& folder : folders) {
-    if (IsRun(folder)) {
+    if (IsRunFolder(folder)) {
       found.push_back(folder);
       continue;
     }
-    std::error_code failed;
-    std::vector<std::string> below;
-    for (fs::recursive_directory_iterator it(folder, failed), end;
-         !failed && it != end; it.increment(failed)) {
-      if (it->is_directory() && IsRun(it->path())) {
-        below.push_back(it->path().string());
-      }
-    }
-    if (below.empty()) {
+    Result<std::vector<std::string>> below = RunsBelow(folder);
+    if (!below.ok()) return below.error();
+    if (below->empty()) {
       return Error{ErrorCode::kNotFound,
                    folder + ": no run here (a folder with run.json)"};
     }
-    std::sort(below.begin(), below.end());
-    found.insert(found.end(), below.begin(), below.end());
+    found.insert(found.end(), below->begin(), below->end());
   }
   return found;
 }
 
-Result<std::vector<LoadedRun>> LoadRuns(
-    const std::vector<std::string>& folders) {
+Result<std::vector<LoadedRun>> LoadRuns(const std::vector<std::string>& folders,
+                                        std::vector<std::string>* others) {
   const Result<std::vector<std::string>> found = FindRuns(folders);
   if (!found.ok()) return found.error();
   std::vector<LoadedRun> runs;
   for (const std::string& folder : *found) {
     Result<LoadedRun> run = LoadRun(folder);
-    if (!run.ok()) return run.error();
-    runs.push_back(*std::move(run));
+    if (run.ok()) {
+      runs.push_back(*std::move(run));
+      continue;
+    }
+    const bool named =
+        std::find(folders.begin(), folders.end(), folder) != folders.end();
+    if (named || run.error().code != ErrorCode::kUnsupported) {
+      return run.error();
+    }
+    if (others != nullptr) others->push_back(run.error().message);
   }
   return runs;
 }
 
-std::string WhyNotComparable(const LoadedRun& a, const LoadedRun& b) {
-  const RunDescription& x = a.description;
-  const RunDescription& y = b.description;
-  std::string what;
-  if (x.dataset_digest != y.dataset_digest) {
-    what = "dataset";
-  } else if (x.case_list_digest != y.case_list_digest) {
-    what = "case list";
-  } else if (x.stride != y.stride) {
-    what = "stride";
-  } else if (x.joints != y.joints) {
-    what = "joint rule";
-  } else if (x.corner_cutting != y.corner_cutting ||
-             x.clearance_cells != y.clearance_cells) {
-    what = "cost model";
-  } else {
-    const Result<std::string> id = DifferentCase(a, b);
-    if (!id.ok()) return id.error().message;
-    if (!id->empty()) what = "map or baseline of case " + *id;
+Result<std::optional<Mismatch>> FindMismatch(const LoadedRun& a,
+                                             const LoadedRun& b,
+                                             const std::set<Shared>& varies) {
+  for (const SharedValue& value : SharedValues(a, b)) {
+    if (!value.same && !varies.contains(value.what)) {
+      return MismatchIn(value.what, value.name, a, b);
+    }
   }
-  if (what.empty()) return "";
-  return a.folder + " and " + b.folder + " differ in their " + what;
+  if (a.description.stride != b.description.stride ||
+      a.description.joints != b.description.joints) {
+    return std::optional<Mismatch>();
+  }
+  const Result<std::string> id = DifferentCase(a, b);
+  if (!id.ok()) return id.error();
+  if (id->empty()) return std::optional<Mismatch>();
+  return MismatchIn(Shared::kBaselines, "map or baseline of case " + *id, a, b);
 }
 
 Status KeepCommonCases(std::vector<LoadedRun>& runs) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,19 +43,44 @@ struct LoadedRun {
 /// least half as many, chosen by the cases' keys. Errors: those of `read`.
 Status SumUp(LoadedRun& run, std::int64_t at_once = kMaxCasesKept);
 
-/// Reads runs; a folder without run.json stands for all runs below it.
-/// Errors: name the file; no run found.
+/// Reads runs; a folder without run.json stands for all runs below it. What is
+/// found below and has a run.json of something else is passed over: `others`
+/// then gets why, a sentence each.
+/// Errors: name the file; no run found; a folder that cannot be looked into.
 Result<std::vector<LoadedRun>> LoadRuns(
-    const std::vector<std::string>& folders);
+    const std::vector<std::string>& folders,
+    std::vector<std::string>* others = nullptr);
 
-/// The runs below these folders, in order of their paths.
+/// Is it a run's own folder: does it hold a run.json?
+bool IsRunFolder(const std::string& folder);
+
+/// The runs below these folders, in order of their paths. Hidden folders (a
+/// leading dot) and what is no folder are passed over.
 Result<std::vector<std::string>> FindRuns(
     const std::vector<std::string>& folders);
 
-/// Why two runs cannot stand in one table; empty = they can. They need the same
-/// dataset, case list, stride, joints and cost model, and for each case the
-/// same map and baseline.
-std::string WhyNotComparable(const LoadedRun& a, const LoadedRun& b);
+/// What rows of one table must have alike.
+enum class Shared {
+  kDataset,
+  kCaseList,
+  kStride,
+  kJoints,
+  kCostModel,
+  kBaselines,  ///< Map and baseline of each case that both have.
+};
+
+/// Why two runs cannot stand in one table.
+struct Mismatch {
+  Shared what;       ///< The first that they do not share.
+  std::string text;  ///< The same for people, with both folders.
+};
+
+/// The first mismatch of two runs beside what the table may vary; none = they
+/// can stand in one table. Where stride or joints vary, so do the baselines.
+/// Errors: those of the runs' readers.
+Result<std::optional<Mismatch>> FindMismatch(
+    const LoadedRun& a, const LoadedRun& b,
+    const std::set<Shared>& varies = {});
 
 /// Only the cases that all runs have, for `--intersect`. Errors: those of the
 /// runs' readers.

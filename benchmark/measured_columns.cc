@@ -27,9 +27,10 @@ MeasuredColumn SecondsColumn(const std::string& name,
           }};
 }
 
-MeasuredColumn MethodColumn(const std::string& name) {
-  return {WordColumn(name), [](const MeasuredRow& row) {
-            return TableCell(RowTitle(row.run));
+MeasuredColumn MethodColumn(const std::string& name,
+                            std::set<std::string_view> shown) {
+  return {WordColumn(name), [shown = std::move(shown)](const MeasuredRow& row) {
+            return TableCell(RowTitle(row.run, shown));
           }};
 }
 

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "benchmark/loaded_run.h"
@@ -35,8 +37,10 @@ MeasuredColumn PercentColumn(const std::string& name,
 MeasuredColumn SecondsColumn(const std::string& name,
                              std::optional<double> Metrics::*seconds);
 
-/// What a row is named by: the run, its group, its stride.
-MeasuredColumn MethodColumn(const std::string& name = "Method");
+/// What a row is named by: the run, its group, its stride. `shown`: the fields
+/// that the table has columns for, which the title leaves out (RowTitle).
+MeasuredColumn MethodColumn(const std::string& name = "Method",
+                            std::set<std::string_view> shown = {});
 MeasuredColumn GroupColumn(const std::string& name = "Subset");
 MeasuredColumn StrideColumn();
 

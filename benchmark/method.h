@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,7 +56,7 @@ class Method {
 struct MethodInfo {
   std::string method;   ///< "advisor", "direct", "coarse", ...
   std::string backend;  ///< "search", "openai", ...; empty where it has none.
-  std::string title;    ///< As tables print it.
+  std::string title;    ///< As tables begin a row, without "+ gate".
   CountingRule rule;
   /// Baseline planning is part of its time.
   bool uses_baseline = true;
@@ -66,6 +67,13 @@ struct MethodInfo {
   /// No real model answers: a simulation or scripted server.
   bool simulated = false;
 };
+
+/// Does a method deploy the baseline where its own route is no better, without
+/// being given a gate? Nothing for a method that there is not.
+std::optional<bool> FallsBack(std::string_view method);
+
+/// Its title; "+ gate" where it was given one.
+std::string TitleWithGate(const MethodInfo& info);
 
 /// A method that can be made once per thread.
 struct MethodChoice {

@@ -1,6 +1,7 @@
 #include "benchmark/missing_rows.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "benchmark/run_labels.h"
@@ -31,14 +32,6 @@ std::string KeyVariable(const std::string& backend) {
   return "ANTHROPIC_API_KEY";
 }
 
-bool Measured(const std::vector<LoadedRun>& runs, const std::string& method,
-              const std::string& backend) {
-  return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& run) {
-    return run.description.method == method && ProviderOf(run) == backend &&
-           !run.description.simulated;
-  });
-}
-
 }  // namespace
 
 std::string HowToMeasure(const std::string& method, const std::string& backend,
@@ -49,16 +42,44 @@ std::string HowToMeasure(const std::string& method, const std::string& backend,
          backend + suffix;
 }
 
-void AddMissing(const std::vector<LoadedRun>& runs, Table& table,
+bool IsMeasured(const std::vector<LoadedRun>& runs, const std::string& method,
+                const std::string& provider,
+                const std::vector<std::string>& groups) {
+  return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& run) {
+    return StandsForPaper(run, method, provider) &&
+           std::any_of(groups.begin(), groups.end(),
+                       [&run](const std::string& group) {
+                         return MetricsOf(run, group).paths > 0;
+                       });
+  });
+}
+
+void AddMissing(const std::vector<LoadedRun>& runs,
+                const std::vector<std::string>& groups, Table& table,
                 const std::string& more, const std::string& suffix) {
+  std::vector<LoadedRun> plain;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(plain), IsPlain);
   TableBlock missing;
-  missing.heading = "Not measured here";
+  missing.heading = kMissingHeading;
   for (const PaperRow& row : kPaperMethods) {
-    if (Measured(runs, row.method, row.backend)) continue;
+    if (IsMeasured(plain, row.method, row.backend, groups)) continue;
     missing.rows.push_back(
         {row.title, HowToMeasure(row.method, row.backend, more, suffix)});
   }
   if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+}
+
+void NoteWithoutRow(const std::vector<LoadedRun>& runs,
+                    const std::function<bool(const LoadedRun&)>& has_row,
+                    const std::string& why, Table& table) {
+  std::string names;
+  for (const LoadedRun& run : runs) {
+    if (has_row(run)) continue;
+    names += (names.empty() ? "" : "; ") + run.folder + ": " + RowTitle(run);
+  }
+  if (!names.empty()) {
+    table.notes.push_back("Not in this table, which has " + why + ": " + names);
+  }
 }
 
 }  // namespace terra::benchmark

@@ -177,7 +177,8 @@ Result<FramePaths> FindFrames(const std::string& folder) {
   if (folder.empty()) return paths;
   const auto frames = FindRugdFrames(folder);
   if (!frames.ok()) return frames.error();
-  for (const RugdFrame& frame : *frames) paths.emplace(frame.name, frame.path);
+  for (const RugdFrame& frame : frames->frames)
+    paths.emplace(frame.name, frame.path);
   return paths;
 }
 

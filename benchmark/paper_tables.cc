@@ -1,11 +1,13 @@
 #include "benchmark/paper_tables.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "benchmark/measured_columns.h"
 #include "benchmark/missing_rows.h"
 #include "benchmark/paper_rows.h"
+#include "benchmark/run_fields.h"
 #include "benchmark/run_labels.h"
 
 namespace terra::benchmark {
@@ -18,8 +20,43 @@ constexpr const char* kNotTheirMaps =
 // "0" without a model. Rounds end at a Yes, an accepted route or the deadline.
 std::string CallsPerCase(const LoadedRun& run) {
   if (!run.description.asks_model) return "0";
-  const std::string rounds = SettingOf(run, "rounds", "1");
+  const std::string rounds = SettingOf(run, "rounds");
   return rounds == "1" ? "1" : "1 to " + rounds;
+}
+
+constexpr int kPaperStrides[] = {10, 20, 50, 100};
+
+// The paper's rows with a model, by subset and stride, that no run stands for.
+void AddMissingGaps(const std::vector<LoadedRun>& runs, Table& table) {
+  TableBlock missing;
+  missing.heading = kMissingHeading;
+  for (const std::string& group : kSubsets) {
+    for (const int stride : kPaperStrides) {
+      std::vector<LoadedRun> at_stride;
+      for (const LoadedRun& run : runs) {
+        if (IsOfGap(run) && run.description.stride == stride) {
+          at_stride.push_back(run);
+        }
+      }
+      if (IsMeasured(at_stride, "advisor", "openai", {group})) continue;
+      const std::string number = std::to_string(stride);
+      missing.rows.push_back(
+          {group, CountCell(stride), "LLM-Advisor (gpt-5.5)",
+           HowToMeasure("advisor", "openai", " --stride " + number,
+                        "-stride-" + number)});
+    }
+  }
+  if (!missing.rows.empty()) table.blocks.push_back(std::move(missing));
+}
+
+// Runs whose times are of one case at a time.
+std::vector<LoadedRun> OneAtATime(const std::vector<LoadedRun>& runs) {
+  std::vector<LoadedRun> alone;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(alone),
+               [](const LoadedRun& run) {
+                 return run.description.jobs == 1;
+               });
+  return alone;
 }
 
 }  // namespace
@@ -49,7 +86,7 @@ Table ComparisonTable(const std::vector<LoadedRun>& runs,
   measured.heading = "Measured here";
   for (const LoadedRun& run : runs) AddRow(run, group, columns, measured);
   table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table);
+  AddMissing(runs, {group}, table);
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {kIntervalNote, kNotTheirMaps,
                  "FPS = cases over the sum of their end-to-end times; from "
@@ -60,7 +97,7 @@ Table ComparisonTable(const std::vector<LoadedRun>& runs,
 Table OracleGapTable(const std::vector<LoadedRun>& runs) {
   const MeasuredColumns columns = {GroupColumn(),
                                    StrideColumn(),
-                                   MethodColumn(),
+                                   MethodColumn("Method", {kStrideField}),
                                    ComparableColumn(),
                                    CountColumn("N_Gap", &Metrics::gaps),
                                    GapRateColumn(),
@@ -74,7 +111,7 @@ Table OracleGapTable(const std::vector<LoadedRun>& runs) {
   table.columns = HeadsOf(columns);
   std::vector<const LoadedRun*> by_stride;
   for (const LoadedRun& run : runs) {
-    if (run.description.rule.fallback) by_stride.push_back(&run);
+    if (IsOfGap(run)) by_stride.push_back(&run);
   }
   std::stable_sort(by_stride.begin(), by_stride.end(),
                    [](const LoadedRun* a, const LoadedRun* b) {
@@ -88,11 +125,12 @@ Table OracleGapTable(const std::vector<LoadedRun>& runs) {
     }
   }
   table.blocks.push_back(std::move(block));
+  AddMissingGaps(runs, table);
   TableBlock paper;
   paper.heading = kPaperHeading;
   paper.published = true;
   for (const Subset subset : {Subset::kEasy, Subset::kHard}) {
-    for (const int stride : {10, 20, 50, 100}) {
+    for (const int stride : kPaperStrides) {
       const PaperGap row = PaperGapOf(subset, stride);
       const auto n = static_cast<std::int64_t>(row.gap_rate * 10 + 0.5);
       paper.rows.push_back({std::string(SubsetName(subset)), CountCell(stride),
@@ -104,6 +142,9 @@ Table OracleGapTable(const std::vector<LoadedRun>& runs) {
   }
   table.blocks.push_back(std::move(paper));
   table.notes = {kIntervalNote, kNotTheirMaps};
+  NoteWithoutRow(runs, IsOfGap,
+                 "no runs with noise or an ablation, and none without fallback",
+                 table);
   return table;
 }
 
@@ -120,7 +161,7 @@ Table RugdTable(const std::vector<LoadedRun>& runs) {
   TableBlock measured;
   measured.heading = "Measured here";
   for (const LoadedRun& run : runs) {
-    for (const char* scene : {"creek", "park", "trail", "village"}) {
+    for (const std::string& scene : kScenes) {
       AddRow(run, scene, columns, measured);
     }
   }
@@ -132,7 +173,7 @@ Table RugdTable(const std::vector<LoadedRun>& runs) {
          "--out runs/rugd-shortcut"});
   }
   table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table, "", "-rugd");
+  AddMissing(runs, kScenes, table, "", "-rugd");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Intervals of means: bootstrap over sequences, not frames.",
@@ -168,11 +209,11 @@ Table LatencyTable(const std::vector<LoadedRun>& runs) {
   table.columns = HeadsOf(columns);
   TableBlock measured;
   measured.heading = "Measured here";
-  for (const LoadedRun& run : runs) {
-    if (run.description.jobs == 1) AddRows(run, columns, measured);
+  for (const LoadedRun& run : OneAtATime(runs)) {
+    AddRows(run, columns, measured);
   }
   if (!measured.rows.empty()) table.blocks.push_back(std::move(measured));
-  AddMissing(runs, table, " --cases 50", "-latency");
+  AddMissing(OneAtATime(runs), kSubsets, table, " --cases 50", "-latency");
   table.blocks.push_back(PaperBlock(table.id, table.columns));
   table.notes = {
       "Medians of each stage, p95 by nearest rank; only runs with --jobs 1.",

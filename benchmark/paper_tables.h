@@ -14,11 +14,11 @@ namespace terra::benchmark {
 /// simulation are marked SIMULATED.
 /// Those on a model's switches are in switch_tables.h.
 ///
-/// Pre: runs that are comparable (WhyNotComparable), but for what the table
-///      varies.
+/// Pre: runs that are comparable (FindMismatch), but for what the table varies.
 Table ComparisonTable(const std::vector<LoadedRun>& runs,
                       const std::string& group);
-/// Varies the stride. MOGR is each run's own.
+/// Varies the stride. MOGR is each run's own. Only plain runs of methods with
+/// fallback have a row.
 Table OracleGapTable(const std::vector<LoadedRun>& runs);
 Table RugdTable(const std::vector<LoadedRun>& runs);
 Table LatencyTable(const std::vector<LoadedRun>& runs);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "benchmark/paper_rows.h"
@@ -65,44 +66,62 @@ class Svg {
 const std::string kGrid = "stroke:var(--grid,#ddd);stroke-width:1";
 
 struct DotRow {
-  std::string label;
+  std::vector<std::string> label;  // In lines.
   Estimate estimate;
   bool control = false;
 };
 
-// The title, cut to fit beside the plot.
-std::string ShortTitle(const LoadedRun& run) {
-  std::string title = RowTitle(run);
-  if (title.size() > 56) title = title.substr(0, 54) + "…";
-  return title;
+// A title in lines that fit beside the plot, parted at spaces.
+std::vector<std::string> TitleLines(const std::string& title) {
+  constexpr std::size_t kLongest = 56;
+  std::vector<std::string> lines(1);
+  std::istringstream words(title);
+  for (std::string word; words >> word;) {
+    std::string& line = lines.back();
+    if (!line.empty() && line.size() + 1 + word.size() > kLongest) {
+      lines.push_back(word);
+    } else {
+      line += (line.empty() ? "" : " ") + word;
+    }
+  }
+  return lines;
 }
 
 std::string DotPlot(const std::vector<DotRow>& rows, const std::string& label) {
   constexpr double kLeft = 370;
   constexpr double kWidth = 420;
-  constexpr double kStep = 26;
+  constexpr double kLine = 15;
+  constexpr double kGap = 11;  // Between rows.
   constexpr double kTop = 26;
-  const double bottom = kTop + kStep * static_cast<double>(rows.size());
+  double bottom = kTop;
+  for (const DotRow& row : rows) {
+    bottom += kGap + kLine * static_cast<double>(row.label.size());
+  }
   Svg svg(840, static_cast<int>(bottom) + 30, label);
   for (int percent = 0; percent <= 100; percent += 20) {
     const double x = kLeft + kWidth * percent / 100;
     svg.Line(x, kTop - 8, x, bottom, kGrid);
     svg.Text(x, bottom + 18, "middle", std::to_string(percent) + " %");
   }
-  double y = kTop + 8;
+  double top = kTop + 8;  // Of the row: its first line.
   for (const DotRow& row : rows) {
     const auto x = [&](double share) {
       return kLeft + kWidth * std::clamp(share, 0.0, 1.0);
     };
+    const double height = kLine * static_cast<double>(row.label.size());
+    const double y = top + (height - kLine) / 2;
     const std::string color =
         row.control ? "var(--muted,#8a8f98)" : "var(--accent,#1f4fe0)";
-    svg.Text(kLeft - 12, y + 4, "end", row.label);
+    for (std::size_t i = 0; i < row.label.size(); ++i) {
+      svg.Text(kLeft - 12, top + 4 + kLine * static_cast<double>(i), "end",
+               row.label[i]);
+    }
     svg.Line(x(row.estimate.low), y, x(row.estimate.high), y,
              "stroke:" + color + ";stroke-width:3;stroke-linecap:round");
     svg.Dot(x(row.estimate.value), y, "fill:" + color);
     svg.Text(kLeft + kWidth + 10, y + 4, "start",
              Number(100 * row.estimate.value));
-    y += kStep;
+    top += kGap + height;
   }
   return svg.Finish();
 }
@@ -119,7 +138,7 @@ std::string MetricPlot(const std::vector<LoadedRun>& runs,
     const bool control = run.description.method != "advisor" &&
                          run.description.method != "direct" &&
                          run.description.method != "llm-astar";
-    rows.push_back({ShortTitle(run), *(m.*pick), control});
+    rows.push_back({TitleLines(RowTitle(run)), *(m.*pick), control});
   }
   return rows.empty() ? "" : DotPlot(rows, label);
 }

@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "advisor/encoding.h"
 #include "benchmark/case_list.h"
 #include "benchmark/detail_tables.h"
+#include "benchmark/missing_rows.h"
+#include "benchmark/named_tables.h"
 #include "benchmark/panels.h"
-#include "benchmark/paper_tables.h"
 #include "benchmark/plots.h"
 #include "benchmark/report_page.h"
 #include "benchmark/report_selection.h"
 #include "benchmark/rugd.h"
 #include "benchmark/run_labels.h"
-#include "benchmark/switch_tables.h"
 #include "output/output_file.h"
 
 namespace terra::benchmark {
@@ -32,34 +33,38 @@ struct Output {
 
 class ReportWriter {
  public:
-  explicit ReportWriter(const ReportOptions& options) : options_(options) {}
+  /// `others`: what was found beside runs, a sentence each.
+  ReportWriter(const ReportOptions& options,
+               const std::vector<std::string>& others)
+      : options_(options), others_(others) {}
 
   Status Write(const std::vector<LoadedRun>& runs) {
     const Result<Selection> selected = SelectRuns(runs);
     if (!selected.ok()) return selected.error();
     const Selection& s = *selected;
     page_.Intro(runs);
-    MainComparison(s.comparison);
-    const Status paired = Paired(s.comparison);
-    if (!paired.ok()) return paired;
+    MainComparison(s);
     Gaps(s);
     page_.Section("Ablation, noise, latency",
                   "Rows of a model are measured by the commands shown, or "
                   "reproduced from a recording. Latency rows are of runs that "
                   "took one case at a time, on the cases that all of them "
                   "have.");
-    Add(AblationTable(s.ablation));
-    Add(NoiseTable(s.noise));
-    Add(LatencyTable(s.latency));
+    for (const char* name : {"ablation", "noise", "latency"}) AddNamed(name, s);
     page_.Section("RUGD",
                   "Semantic masks of camera frames as cost rasters: how the "
                   "methods transfer.");
-    Add(RugdTable(s.rugd));
+    AddNamed("rugd", s);
     Others(s.others);
     const Status pictures = Pictures(s);
     if (!pictures.ok()) return pictures.error();
     page_.Section("What produced these figures", "");
-    Add(RunsTable(runs));
+    AddNamed("runs", s);
+    for (const std::string& other : others_) {
+      page_.Html("<p class=\"note\">Passed over: " + EscapeHtml(other) +
+                 "</p>\n");
+    }
+    if (failure_) return *failure_;
     outputs_.push_back({"report.html", page_.Finish()});
     return WriteOutputs();
   }
@@ -79,49 +84,48 @@ class ReportWriter {
     outputs_.push_back({"figures/" + name + ".svg", svg});
   }
 
-  void MainComparison(const std::vector<LoadedRun>& runs) {
+  // A table that cannot be made ends the report when all are tried.
+  void AddNamed(const std::string& name, const Selection& s) {
+    const NamedTable& named = TableNamed(name);
+    const Result<Table> table = named.make(s.*named.runs);
+    if (table.ok()) {
+      Add(*table);
+    } else if (!failure_) {
+      failure_ = table.error();
+    }
+  }
+
+  void MainComparison(const Selection& s) {
     page_.Section(
         "Main comparison",
         "Every method on the same cases, scored by the one verifier. With "
         "fallback a method deploys its route only when it is verified as "
         "strictly cheaper than the baseline; without it whatever it returned "
         "stands.");
-    for (const std::string group : {"easy", "hard"}) {
-      Add(ComparisonTable(runs, group));
+    for (const std::string& group : kSubsets) {
+      AddNamed("comparison-" + group, s);
       Plot("fir-" + group,
            "Final improvement rate with 95 % interval, " + group +
                " subset. Blue: advisors; grey: references and controls.",
-           FirPlot(runs, group));
+           FirPlot(s.comparison, group));
     }
-    for (const std::string group : {"easy", "hard"}) {
-      Add(ProposalTable(runs, group));
+    for (const std::string& group : kSubsets) {
+      AddNamed("proposals-" + group, s);
       Plot("mogr-" + group,
            "Mean share of the oracle gap that is recovered, " + group +
                " subset.",
-           MogrPlot(runs, group));
+           MogrPlot(s.comparison, group));
     }
-  }
-
-  // Against the control without a model: gains mean something beside it.
-  Status Paired(std::vector<LoadedRun> runs) {
-    std::stable_partition(runs.begin(), runs.end(), [](const LoadedRun& run) {
-      return run.description.method == "corridor";
-    });
-    for (const std::string group : {"easy", "hard"}) {
-      const Result<Table> table = PairedTable(runs, group);
-      if (!table.ok()) return table.error();
-      Add(*table);
-    }
-    return Done{};
+    for (const std::string& group : kSubsets) AddNamed("paired-" + group, s);
   }
 
   void Gaps(const Selection& s) {
     page_.Section("Oracle gap",
                   "What the coarse lattice costs more than the native optimum, "
                   "and how much of that a method wins back.");
-    Add(OracleGapTable(s.gap));
+    AddNamed("oracle-gap", s);
     Plot("gap-by-stride", "Mean gap by lattice stride.", GapPlot(s.gap));
-    Add(JointsTable(s.joints));
+    AddNamed("joints", s);
   }
 
   void Others(const std::vector<std::vector<LoadedRun>>& others) {
@@ -179,7 +183,7 @@ class ReportWriter {
     for (const auto* runs : {&s.ablation, &s.comparison, &s.rugd}) {
       for (const LoadedRun& run : *runs) {
         if (run.description.dataset_digest != digest ||
-            run.description.method != "advisor") {
+            run.description.method != "advisor" || !IsPlain(run)) {
           continue;
         }
         const bool shortcut = run.description.backend == "shortcut";
@@ -222,14 +226,17 @@ class ReportWriter {
   }
 
   const ReportOptions& options_;
+  const std::vector<std::string>& others_;
   ReportPage page_;
   std::vector<Output> outputs_;
+  std::optional<Error> failure_;
 };
 
 }  // namespace
 
 Status WriteReport(const ReportOptions& options) {
-  Result<std::vector<LoadedRun>> runs = LoadRuns(options.runs);
+  std::vector<std::string> others;
+  Result<std::vector<LoadedRun>> runs = LoadRuns(options.runs, &others);
   if (!runs.ok()) return runs.error();
   if (!options.include_simulated) {
     std::erase_if(*runs, [](const LoadedRun& run) {
@@ -237,7 +244,7 @@ Status WriteReport(const ReportOptions& options) {
     });
   }
   SortRows(*runs);
-  return ReportWriter(options).Write(*runs);
+  return ReportWriter(options, others).Write(*runs);
 }
 
 }  // namespace terra::benchmark

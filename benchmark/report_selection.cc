@@ -1,6 +1,7 @@
 #include "benchmark/report_selection.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -23,16 +24,21 @@ Runs Select(const Runs& runs, Predicate wanted) {
 }
 
 // The largest set (in rows) of runs that stand together with one of them.
+// Errors: those of `together`.
 template <typename Together>
-Runs LargestSet(const Runs& runs, Together together) {
+Result<Runs> LargestSet(const Runs& runs, Together together) {
   Runs best;
   std::int64_t best_rows = 0;
   for (const LoadedRun& first : runs) {
-    Runs set = Select(runs, [&](const LoadedRun& run) {
-      return together(first, run);
-    });
+    Runs set;
     std::int64_t rows = 0;
-    for (const LoadedRun& run : set) rows += run.num_rows;
+    for (const LoadedRun& run : runs) {
+      const Result<bool> fits = together(first, run);
+      if (!fits.ok()) return fits.error();
+      if (!*fits) continue;
+      set.push_back(run);
+      rows += run.num_rows;
+    }
     if (rows > best_rows) {
       best_rows = rows;
       best = std::move(set);
@@ -41,112 +47,147 @@ Runs LargestSet(const Runs& runs, Together together) {
   return best;
 }
 
-Runs LargestComparable(const Runs& runs) {
-  return LargestSet(runs, [](const LoadedRun& a, const LoadedRun& b) {
-    return WhyNotComparable(a, b).empty();
+Result<bool> AreComparable(const LoadedRun& a, const LoadedRun& b,
+                           const std::set<Shared>& varies) {
+  const auto mismatch = FindMismatch(a, b, varies);
+  if (!mismatch.ok()) return mismatch.error();
+  return !mismatch->has_value();
+}
+
+Result<Runs> LargestComparable(const Runs& runs,
+                               const std::set<Shared>& varies = {}) {
+  return LargestSet(runs, [&](const LoadedRun& a, const LoadedRun& b) {
+    return AreComparable(a, b, varies);
   });
-}
-
-bool SameMaps(const LoadedRun& a, const LoadedRun& b) {
-  const RunDescription& x = a.description;
-  const RunDescription& y = b.description;
-  return x.dataset_digest == y.dataset_digest &&
-         x.corner_cutting == y.corner_cutting &&
-         x.clearance_cells == y.clearance_cells;
-}
-
-bool SameCases(const LoadedRun& a, const LoadedRun& b) {
-  return SameMaps(a, b) &&
-         a.description.case_list_digest == b.description.case_list_digest;
-}
-
-bool SameBaselines(const LoadedRun& a, const LoadedRun& b) {
-  return SameMaps(a, b) && a.description.stride == b.description.stride &&
-         a.description.joints == b.description.joints;
 }
 
 // Runs over different lists of cases on the cases that all have.
 Result<Runs> LargestOnCommonCases(const Runs& runs) {
-  Runs set = LargestSet(runs, SameBaselines);
-  const Status kept = KeepCommonCases(set);
+  Result<Runs> set = LargestComparable(runs, {Shared::kCaseList});
+  if (!set.ok()) return set;
+  const Status kept = KeepCommonCases(*set);
   if (!kept.ok()) return kept.error();
-  const bool any = !set.empty() && set.front().num_rows > 0;
+  const bool any = !set->empty() && set->front().num_rows > 0;
   return any ? set : LargestComparable(runs);
 }
 
-Runs WithoutDoubles(const Runs& runs) {
-  Runs once;
-  for (const LoadedRun& run : runs) {
-    const auto same =
-        std::find_if(once.begin(), once.end(), [&](const LoadedRun& other) {
-          return run.description.SameFigures(other.description);
-        });
-    if (same == once.end()) {
-      once.push_back(run);
-    } else if (run.description.jobs == 1 && same->description.jobs != 1) {
-      *same = run;
-    }
-  }
-  return once;
+Result<Runs> Largest(const Runs& runs, CaseLists lists) {
+  return lists == CaseLists::kCommon ? LargestOnCommonCases(runs)
+                                     : LargestComparable(runs);
 }
 
 bool HasDouble(const Runs& runs, const LoadedRun& run) {
   return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& other) {
-    return run.description.SameFigures(other.description);
+    return run.description.SameRow(other.description);
   });
+}
+
+// Of two runs that are one row.
+bool SaysMore(const LoadedRun& a, const LoadedRun& b) {
+  const auto rank = [](const LoadedRun& run) {
+    return std::pair(run.complete(), run.description.jobs == 1);
+  };
+  return rank(a) > rank(b);
 }
 
 // Parts the runs that no other table has, nor a double of them, into sets of
 // comparable ones.
-std::vector<Runs> SelectOthers(const Runs& runs, const Selection& s) {
+Result<std::vector<Runs>> SelectOthers(const Runs& runs, const Selection& s) {
   Runs shown;
   for (const Runs* table : {&s.comparison, &s.gap, &s.joints, &s.rugd,
                             &s.latency, &s.ablation, &s.noise}) {
     shown.insert(shown.end(), table->begin(), table->end());
   }
   std::vector<Runs> others;
-  for (const LoadedRun& run : runs) {
+  for (const LoadedRun& run : WithoutDoubles(runs)) {
     if (HasDouble(shown, run)) continue;
-    const auto set =
-        std::find_if(others.begin(), others.end(), [&](const Runs& o) {
-          return WhyNotComparable(o.front(), run).empty();
-        });
-    if (set == others.end()) {
-      others.push_back({run});
-    } else {
-      set->push_back(run);
+    Runs* set = nullptr;
+    for (Runs& other : others) {
+      const Result<bool> fits = AreComparable(other.front(), run, {});
+      if (!fits.ok()) return fits.error();
+      if (*fits && set == nullptr) set = &other;
     }
+    if (set == nullptr) set = &others.emplace_back();
+    set->push_back(run);
   }
   return others;
 }
 
+// Runs on the maps of the main comparison that differ from it in what varies.
+Result<Runs> Beside(const LoadedRun& main, const Runs& runs,
+                    std::set<Shared> varies, CaseLists lists) {
+  if (lists == CaseLists::kCommon) varies.insert(Shared::kCaseList);
+  Runs beside;
+  for (const LoadedRun& run : runs) {
+    const Result<bool> fits = AreComparable(main, run, varies);
+    if (!fits.ok()) return fits.error();
+    if (*fits) beside.push_back(run);
+  }
+  if (lists == CaseLists::kCommon) {
+    const Status kept = KeepCommonCases(beside);
+    if (!kept.ok()) return kept.error();
+  }
+  return WithoutDoubles(beside);
+}
+
+// Puts the runs of a table, without doubles, where they belong.
+Status Put(const Result<Runs>& runs, Runs& place) {
+  if (!runs.ok()) return runs.error();
+  place = WithoutDoubles(*runs);
+  return Done{};
+}
+
 // Tables that follow the maps of the main comparison.
-void SelectBeside(const LoadedRun& main, const Runs& plain, Selection& s) {
-  s.gap = WithoutDoubles(Select(plain, [&](const LoadedRun& run) {
-    return SameCases(run, main) && run.description.method == "advisor" &&
-           run.description.joints == "2r";
-  }));
-  s.joints = WithoutDoubles(Select(plain, [&](const LoadedRun& run) {
-    return SameCases(run, main) && run.description.method == "coarse" &&
-           run.description.stride == kPaperStride;
-  }));
+Status SelectBeside(const LoadedRun& main, const Runs& plain, CaseLists lists,
+                    Selection& s) {
+  const Status gap =
+      Put(Beside(main,
+                 Select(plain,
+                        [](const LoadedRun& run) {
+                          return IsOfGap(run) &&
+                                 run.description.method == "advisor";
+                        }),
+                 {Shared::kStride}, lists),
+          s.gap);
+  if (!gap.ok()) return gap;
+  return Put(Beside(main,
+                    Select(plain,
+                           [](const LoadedRun& run) {
+                             return run.description.method == "coarse";
+                           }),
+                    {Shared::kJoints}, lists),
+             s.joints);
 }
 
 // Tables whose runs may have different lists of cases.
 Status SelectOnCommonCases(const Runs& generated, Selection& s) {
-  const Result<Runs> latency =
-      LargestOnCommonCases(Select(generated, [](const LoadedRun& run) {
-        return IsPlain(run) && run.description.jobs == 1;
-      }));
-  if (!latency.ok()) return latency.error();
-  const Result<Runs> noise =
-      LargestOnCommonCases(Select(generated, [](const LoadedRun& run) {
-        return IsAdvisedByModel(run) && HasAllSwitchesOn(run);
-      }));
-  if (!noise.ok()) return noise.error();
-  s.latency = WithoutDoubles(*latency);
-  s.noise = WithoutDoubles(*noise);
-  return Done{};
+  const Status latency =
+      Put(LargestOnCommonCases(Select(generated,
+                                      [](const LoadedRun& run) {
+                                        return IsPlain(run) &&
+                                               run.description.jobs == 1;
+                                      })),
+          s.latency);
+  if (!latency.ok()) return latency;
+  return Put(LargestOnCommonCases(Select(generated, IsOfNoise)), s.noise);
+}
+
+Status SelectMain(const Runs& plain, CaseLists lists, Selection& s) {
+  const Status put =
+      Put(Largest(Select(plain,
+                         [](const LoadedRun& run) {
+                           const RunDescription& d = run.description;
+                           return d.stride == kPaperStride && d.joints == "2r";
+                         }),
+                  lists),
+          s.comparison);
+  if (!put.ok() || s.comparison.empty()) return put;
+  s.paired = s.comparison;
+  std::stable_partition(s.paired.begin(), s.paired.end(),
+                        [](const LoadedRun& run) {
+                          return run.description.method == "corridor";
+                        });
+  return SelectBeside(s.comparison.front(), plain, lists, s);
 }
 
 int RowRank(const LoadedRun& run) {
@@ -160,27 +201,42 @@ int RowRank(const LoadedRun& run) {
 
 }  // namespace
 
-Result<Selection> SelectRuns(const std::vector<LoadedRun>& runs) {
+Runs WithoutDoubles(const Runs& runs) {
+  Runs once;
+  for (const LoadedRun& run : runs) {
+    const auto same =
+        std::find_if(once.begin(), once.end(), [&](const LoadedRun& other) {
+          return run.description.SameRow(other.description);
+        });
+    if (same == once.end()) {
+      once.push_back(run);
+    } else if (SaysMore(run, *same)) {
+      *same = run;
+    }
+  }
+  return once;
+}
+
+Result<Selection> SelectRuns(const Runs& runs, CaseLists lists) {
   const Runs generated = Select(runs, IsGenerated);
-  const Runs plain = Select(generated, IsPlain);
   Selection s;
-  s.comparison =
-      WithoutDoubles(LargestComparable(Select(plain, [](const LoadedRun& run) {
-        return run.description.stride == kPaperStride &&
-               run.description.joints == "2r";
-      })));
-  if (!s.comparison.empty()) SelectBeside(s.comparison.front(), plain, s);
-  s.rugd = WithoutDoubles(
-      LargestComparable(Select(Select(runs, IsRugd), [](const LoadedRun& run) {
-        return IsPlain(run) && run.description.stride == kPaperStride;
-      })));
-  s.ablation = WithoutDoubles(
-      LargestComparable(Select(generated, [](const LoadedRun& run) {
-        return IsAdvisedByModel(run) && SettingOf(run, "noise", "0") == "0";
-      })));
-  const Status selected = SelectOnCommonCases(generated, s);
-  if (!selected.ok()) return selected.error();
-  s.others = SelectOthers(runs, s);
+  s.all = runs;
+  for (const Status& selected :
+       {SelectMain(Select(generated, IsPlain), lists, s),
+        Put(Largest(Select(Select(runs, IsRugd),
+                           [](const LoadedRun& run) {
+                             return IsPlain(run) &&
+                                    run.description.stride == kPaperStride;
+                           }),
+                    lists),
+            s.rugd),
+        Put(Largest(Select(generated, IsOfAblation), lists), s.ablation),
+        SelectOnCommonCases(generated, s)}) {
+    if (!selected.ok()) return selected.error();
+  }
+  Result<std::vector<Runs>> others = SelectOthers(runs, s);
+  if (!others.ok()) return others.error();
+  s.others = *std::move(others);
   return s;
 }
 

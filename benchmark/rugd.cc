@@ -1,6 +1,7 @@
 #include "benchmark/rugd.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -10,6 +11,7 @@
 
 #include "advisor/encoding.h"
 #include "benchmark/generate_dataset.h"
+#include "benchmark/hidden_path.h"
 #include "benchmark/parallel.h"
 #include "benchmark/progress.h"
 #include "output/output_file.h"
@@ -25,11 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMaxMaskBytes = std::size_t{64} << 20;
+
 // What became of a frame.
 struct Converted {
   std::optional<RugdEnds> ends;
-  std::string reason;
+  std::string reason;  // Why there are none.
   std::int64_t map_id = 0;
+  bool read = true;  // Its mask could be.
 };
 
 Result<Converted> ConvertFrame(const RugdFrame& frame,
@@ -37,9 +42,10 @@ Result<Converted> ConvertFrame(const RugdFrame& frame,
   MapFileOptions read;
   read.legend = "rugd";
   const Result<MapFile> file = ReadMap(frame.path, read);
-  if (!file.ok()) return file.error();
+  if (!file.ok()) return Converted{{}, file.error().message, 0, false};
   RugdDraw draw = DrawRugdEnds(file->map, options.seed, frame.name);
-  Converted converted{draw.ends, std::move(draw.reason), MapId(file->map)};
+  Converted converted{draw.ends, std::move(draw.reason), MapId(file->map),
+                      true};
   if (!converted.ends) return converted;
   const fs::path path = fs::path(options.out) / "maps" / (frame.name + ".png");
   const Status written = WriteIdPng(file->map, path.string());
@@ -61,7 +67,9 @@ std::string Card() {
          "void is impassable (this project's choice). One start and goal per "
          "frame from hash(seed, frame name): in one passable component, at "
          "least 100 cells apart, joined by a lattice route of stride 50. "
-         "Frames without such a pair are in `skipped.csv` with the reason.\n";
+         "Frames without such a pair are in `skipped.csv` with the reason, as "
+         "is "
+         "every file that is no readable mask.\n";
 }
 
 struct Tables {
@@ -71,8 +79,9 @@ struct Tables {
   std::map<std::string, RugdCount> counts;
 };
 
-Tables MakeTables(const std::vector<RugdFrame>& frames,
+Tables MakeTables(const RugdFolder& folder,
                   const std::vector<Converted>& converted) {
+  const std::vector<RugdFrame>& frames = folder.frames;
   Tables tables;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     RugdCount& count = tables.counts[frames[i].group];
@@ -87,6 +96,9 @@ Tables MakeTables(const std::vector<RugdFrame>& frames,
     tables.cases.push_back(CaseOf(frames[i], ends));
     tables.digest_lines +=
         DigestLine(frames[i].name, converted[i].map_id, ends.start, ends.goal);
+  }
+  for (const RugdSkipped& skipped : folder.skipped) {
+    tables.skipped += CsvLine({skipped.name, skipped.reason});
   }
   return tables;
 }
@@ -139,6 +151,74 @@ Status PrepareFolder(const fs::path& out) {
   return Error{ErrorCode::kUnavailable, out.string() + ": " + failed.message()};
 }
 
+bool NoneIsRead(const std::vector<Converted>& converted) {
+  return std::none_of(converted.begin(), converted.end(),
+                      [](const Converted& one) {
+                        return one.read;
+                      });
+}
+
+// Every entry but folders, in order of the paths; of a hidden folder only the
+// folder itself.
+Result<std::vector<fs::path>> FilesBelow(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  fs::recursive_directory_iterator it(folder, failed);
+  for (const fs::recursive_directory_iterator end; !failed && it != end;
+       it.increment(failed)) {
+    std::error_code unknown;
+    if (it->is_directory(unknown)) {
+      if (!IsHidden(it->path())) continue;
+      it.disable_recursion_pending();
+    }
+    files.push_back(it->path());
+  }
+  if (failed) {
+    return Error{
+        ErrorCode::kUnavailable,
+        folder + ": not all below it can be read: " + failed.message()};
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool IsFrameName(const std::string& stem) {
+  const std::size_t last = stem.rfind('_');
+  return last != std::string::npos && last > 0 && last + 1 < stem.size() &&
+         stem.find_first_not_of("0123456789", last + 1) == std::string::npos;
+}
+
+bool IsPng(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) {
+                   return static_cast<char>(std::tolower(c));
+                 });
+  return extension == ".png";
+}
+
+// Empty for a frame.
+std::string WhyNoFrame(const fs::path& path) {
+  std::error_code failed;
+  if (IsHidden(path)) return "hidden, so no image of RUGD";
+  if (!IsPng(path) || !IsFrameName(path.stem().string())) {
+    return "not called SCENE_NNNNN.png";
+  }
+  return fs::is_regular_file(path, failed) ? "" : "no regular file";
+}
+
+RugdFrame FrameOf(const fs::path& path) {
+  const std::string name = path.stem().string();
+  return {path.string(), name, name.substr(0, name.rfind('_')),
+          name.substr(0, name.find_first_of("-_"))};
+}
+
+bool HaveSameContent(const fs::path& a, const fs::path& b) {
+  const auto first = ReadWholeFile(a.string(), kMaxMaskBytes);
+  const auto second = ReadWholeFile(b.string(), kMaxMaskBytes);
+  return first.ok() && second.ok() && *first == *second;
+}
+
 }  // namespace
 
 std::string RugdFramesOf(const DatasetFolder& dataset) {
@@ -148,43 +228,50 @@ std::string RugdFramesOf(const DatasetFolder& dataset) {
                                                    : "";
 }
 
-Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder) {
+Result<RugdFolder> FindRugdFrames(const std::string& folder) {
+  const Result<std::vector<fs::path>> files = FilesBelow(folder);
+  if (!files.ok()) return files.error();
+  RugdFolder found;
   std::map<std::string, RugdFrame> frames;
-  std::error_code failed;
-  for (fs::recursive_directory_iterator it(folder, failed), end;
-       !failed && it != end; it.increment(failed)) {
-    const std::string name = it->path().stem().string();
-    const std::size_t last = name.rfind('_');
-    if (it->path().extension() != ".png" || last == std::string::npos) continue;
-    const RugdFrame frame{it->path().string(), name, name.substr(0, last),
-                          name.substr(0, name.find_first_of("-_"))};
-    if (!frames.emplace(name, frame).second) {
-      return Error{ErrorCode::kInvalid,
-                   folder + ": frame " + name + " stands there twice"};
+  for (const fs::path& path : *files) {
+    const std::string below = path.lexically_relative(folder).string();
+    const std::string why = WhyNoFrame(path);
+    if (!why.empty()) {
+      found.skipped.push_back({below, why});
+      continue;
     }
+    const RugdFrame frame = FrameOf(path);
+    const auto [first, added] = frames.emplace(frame.name, frame);
+    if (added) continue;
+    if (!HaveSameContent(path, first->second.path)) {
+      return Error{ErrorCode::kInvalid,
+                   folder + ": frame " + frame.name +
+                       " stands there twice, and not the same: " +
+                       first->second.path + ", " + path.string()};
+    }
+    found.skipped.push_back({below, "the same as " + first->second.path});
   }
-  if (failed || frames.empty()) {
+  if (frames.empty()) {
     return Error{ErrorCode::kNotFound,
                  folder + ": no RUGD images (SCENE_NNNNN.png) below it"};
   }
-  std::vector<RugdFrame> sorted;
-  for (auto& [name, frame] : frames) sorted.push_back(std::move(frame));
-  return sorted;
+  for (auto& [name, frame] : frames) found.frames.push_back(std::move(frame));
+  return found;
 }
 
 Result<std::vector<RugdCount>> ConvertRugd(const RugdOptions& options) {
-  const auto frames = FindRugdFrames(options.annotations);
-  if (!frames.ok()) return frames.error();
+  const Result<RugdFolder> folder = FindRugdFrames(options.annotations);
+  if (!folder.ok()) return folder.error();
   const Status prepared = PrepareFolder(options.out);
   if (!prepared.ok()) return prepared.error();
-  std::vector<Converted> converted(frames->size());
+  std::vector<Converted> converted(folder->frames.size());
   std::optional<Error> failure;
   std::mutex mutex;
-  const auto count = static_cast<std::int64_t>(frames->size());
-  Progress progress("rugd", count);
+  const auto count = static_cast<std::int64_t>(folder->frames.size());
+  Progress progress("rugd masks", count);
   ParallelFor(count, options.jobs, [&](std::int64_t i) {
     const auto index = static_cast<std::size_t>(i);
-    Result<Converted> one = ConvertFrame((*frames)[index], options);
+    Result<Converted> one = ConvertFrame(folder->frames[index], options);
     progress.Advance();
     const std::scoped_lock lock(mutex);
     if (one.ok()) {
@@ -194,7 +281,12 @@ Result<std::vector<RugdCount>> ConvertRugd(const RugdOptions& options) {
     }
   });
   if (failure) return *failure;
-  const Tables tables = MakeTables(*frames, converted);
+  if (NoneIsRead(converted)) {
+    return Error{ErrorCode::kInvalid,
+                 "no mask below " + options.annotations +
+                     " can be read; the first: " + converted.front().reason};
+  }
+  const Tables tables = MakeTables(*folder, converted);
   const Status written = WriteTables(options, tables);
   if (!written.ok()) return written.error();
   std::vector<RugdCount> counts;

@@ -34,9 +34,24 @@ struct RugdFrame {
 /// Where a converted dataset says that its camera frames are; empty = nowhere.
 std::string RugdFramesOf(const DatasetFolder& dataset);
 
-/// Returns the masks below a folder in order of their names; none for other
-/// files. A name that stands twice is an error.
-Result<std::vector<RugdFrame>> FindRugdFrames(const std::string& folder);
+/// A file that is not converted, and why.
+struct RugdSkipped {
+  std::string name;  ///< Of a frame; else its path below the folder.
+  std::string reason;
+};
+
+/// What a folder of masks or camera frames holds.
+struct RugdFolder {
+  std::vector<RugdFrame> frames;     ///< In order of their names; at least one.
+  std::vector<RugdSkipped> skipped;  ///< What else is there, in order of paths.
+};
+
+/// Looks for images called SCENE_NNNNN.png below a folder. Everything else is
+/// skipped: other files, hidden files and folders (of macOS, say), a second
+/// file of the same name and content.
+/// Errors: no such image; two of one name with different content; a folder that
+/// cannot be looked into.
+Result<RugdFolder> FindRugdFrames(const std::string& folder);
 
 /// What came of it, per group.
 struct RugdCount {
@@ -46,9 +61,11 @@ struct RugdCount {
 };
 
 /// Writes the dataset: id maps, cases.csv (with group and sequence),
-/// legend.csv, dataset.json, skipped.csv (frame, reason) and README.md.
-/// Errors: a colour that RUGD does not have (named with its pixel), no masks, a
-/// folder that holds a dataset already.
+/// legend.csv, dataset.json, skipped.csv (frame, reason) and README.md. A mask
+/// that cannot be read, or has a colour that RUGD does not have (named with its
+/// pixel), is skipped.
+/// Errors: those of FindRugdFrames; no mask that can be read (why the first one
+/// cannot); a folder that holds a dataset already.
 Result<std::vector<RugdCount>> ConvertRugd(const RugdOptions& options);
 
 }  // namespace terra::benchmark

@@ -112,9 +112,9 @@ class Runner {
         options_(options),
         runs_(runs) {}
 
-  /// `total`: the number of cases.
-  Status Run(std::int64_t total) {
-    Progress progress("run", total, NumDone(total));
+  /// `total`: the number of cases; `title`: what progress lines call it.
+  Status Run(std::int64_t total, const std::string& title) {
+    Progress progress(title, total, NumDone(total));
     InOrder<NumberedCase, TriedMethods> work(
         [this] {
           return NextLeft();
@@ -237,6 +237,16 @@ Status Finish(OpenRun& open) {
 
 }  // namespace
 
+std::string ProgressTitle(const std::vector<MethodRun>& runs) {
+  std::string title = "run";
+  for (const MethodRun& run : runs) {
+    const MethodInfo& info = run.choice.info;
+    title += (&run == &runs.front() ? " " : ", ") + info.method +
+             (info.backend.empty() ? "" : " " + info.backend);
+  }
+  return title;
+}
+
 Status RunMethods(const DatasetFolder& dataset, const RunOptions& options,
                   const std::vector<MethodRun>& runs, const RunOrigin& origin) {
   const CaseList cases{dataset.folder, options.cases, options.shard};
@@ -252,8 +262,9 @@ Status RunMethods(const DatasetFolder& dataset, const RunOptions& options,
   }
   Result<CaseCursor> cursor = CaseCursor::Open(cases);
   if (!cursor.ok()) return cursor.error();
-  const Status ran = Runner(dataset, *std::move(cursor), options, open)
-                         .Run(options.shard.NumOf(survey->num_selected));
+  const Status ran =
+      Runner(dataset, *std::move(cursor), options, open)
+          .Run(options.shard.NumOf(survey->num_selected), ProgressTitle(runs));
   if (!ran.ok()) return ran.error();
   for (OpenRun& run : open) {
     const Status finished = Finish(run);

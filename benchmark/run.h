@@ -34,6 +34,9 @@ struct MethodRun {
   std::string settings_json = "{}";
 };
 
+/// What progress lines call these runs: "run advisor search, coarse".
+std::string ProgressTitle(const std::vector<MethodRun>& runs);
+
 /// Who ran it; for run.json.
 struct RunOrigin {
   std::string build_id;

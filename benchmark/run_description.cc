@@ -10,6 +10,7 @@
 
 #include "advisor/wire_json.h"
 #include "benchmark/parallel.h"
+#include "benchmark/run_fields.h"
 #include "output/output_file.h"
 #include "terrain/files/whole_file.h"
 
@@ -40,7 +41,8 @@ std::string MachineText() {
          system.sysname + " " + system.release;
 }
 
-// What decides the figures.
+}  // namespace
+
 ordered_json ConfigurationJson(const RunDescription& d) {
   return {{"method", d.method},
           {"backend", d.backend},
@@ -64,6 +66,8 @@ ordered_json ConfigurationJson(const RunDescription& d) {
           {"settings", ordered_json::parse(d.settings_json)}};
 }
 
+namespace {
+
 void ReadConfiguration(const ordered_json& c, RunDescription& d) {
   c.at("method").get_to(d.method);
   c.at("backend").get_to(d.backend);
@@ -84,6 +88,20 @@ void ReadConfiguration(const ordered_json& c, RunDescription& d) {
       advisor::IntegerAt<int>(c.at("cost_model"), "clearance_cells");
   d.repeats = advisor::IntegerAt<int>(c, "repeats");
   d.settings_json = c.at("settings").dump();
+}
+
+// The first field beside the settings that was not read; empty = none. Settings
+// are kept whole.
+std::string UnknownField(const ordered_json& configuration) {
+  ordered_json others = configuration;
+  others.erase("settings");
+  const ordered_json flat = others.flatten();
+  for (const auto& [path, value] : flat.items()) {
+    if (FindField("/configuration" + path) == nullptr) {
+      return "/configuration" + path;
+    }
+  }
+  return "";
 }
 
 void ReadOrigin(const ordered_json& j, RunDescription& d) {
@@ -122,7 +140,12 @@ std::string RecordedTimes::Days() const {
 }
 
 bool RunDescription::SameFigures(const RunDescription& other) const {
-  return ConfigurationJson(*this) == ConfigurationJson(other);
+  return DecidingValues(*this) == DecidingValues(other);
+}
+
+bool RunDescription::SameRow(const RunDescription& other) const {
+  return SameFigures(other) && models == other.models &&
+         recorded.Days() == other.recorded.Days();
 }
 
 std::string JointsName(planner::JointRule joints) {
@@ -206,6 +229,13 @@ Result<RunDescription> ReadRunDescription(const std::string& path) {
   if (!text.ok()) return text.error();
   try {
     const auto document = ordered_json::parse(*text);
+    if (!document.is_object() || !document.contains("schema") ||
+        !document.contains("configuration")) {
+      return Error{ErrorCode::kUnsupported,
+                   path +
+                       ": not written by terra bench run (no schema, no "
+                       "configuration)"};
+    }
     const int schema = advisor::IntegerAt<int>(document, "schema");
     if (schema != RunDescription::kSchema) {
       return Error{ErrorCode::kUnsupported,
@@ -214,7 +244,14 @@ Result<RunDescription> ReadRunDescription(const std::string& path) {
                        std::to_string(RunDescription::kSchema)};
     }
     RunDescription d;
-    ReadConfiguration(document.at("configuration"), d);
+    const ordered_json& configuration = document.at("configuration");
+    ReadConfiguration(configuration, d);
+    const std::string unknown = UnknownField(configuration);
+    if (!unknown.empty()) {
+      return Error{ErrorCode::kInvalid,
+                   path + ": this program does not know the field " + unknown +
+                       " and cannot tell what it changes"};
+    }
     ReadOrigin(document, d);
     if (d.num_cases < 0 || d.repeats < 1 || d.shard.index < 1 ||
         d.shard.index > d.shard.count) {

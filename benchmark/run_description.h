@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "benchmark/metrics.h"
 #include "benchmark/run.h"
 #include "terrain/result.h"
@@ -57,17 +59,26 @@ struct RunDescription {
   std::vector<std::string> models;   ///< As the replies named them.
   RecordedTimes recorded;            ///< Replay only.
 
-  /// Throws away how it came about, for comparing.
+  /// Has it the same configuration, in all that decides figures (RunFields)?
+  /// How it came about and who answered do not count.
   bool SameFigures(const RunDescription& other) const;
+  /// Has a title of its own nothing to say beside the other's: the same
+  /// figures, answered by the same models, recorded on the same days?
+  bool SameRow(const RunDescription& other) const;
 };
 
 RunDescription DescribeRun(const DatasetFolder& dataset,
                            const CaseSurvey& survey, const RunOptions& options,
                            const MethodRun& run, const RunOrigin& origin);
 
+/// What run.json has under "configuration".
+nlohmann::ordered_json ConfigurationJson(const RunDescription& description);
+
 Status WriteRunDescription(const RunDescription& description,
                            const std::string& path);
-/// Errors: name the file; another schema.
+/// Errors: name the file. kUnsupported: another schema, or some other program's
+/// file; kInvalid also where the configuration has a field that this program
+/// does not know.
 Result<RunDescription> ReadRunDescription(const std::string& path);
 
 /// "2r", "cell" or "visible".

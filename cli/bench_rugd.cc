@@ -17,10 +17,11 @@ int RunRugd(const benchmark::RugdOptions& options) {
     std::cout << count.group << ": " << count.used << " of " << count.frames
               << " frames used\n";
   }
-  std::cout << "paper: creek 745 of 836, park 1,638 of 1,640, trail 3,875 of "
-               "4,843, village 117 of 117\nskipped frames and why: "
-            << options.out << "/skipped.csv\nderived from RUGD, do not "
-            << "redistribute\n";
+  std::cout
+      << "paper: creek 745 of 836, park 1,638 of 1,640, trail 3,875 of "
+         "4,843, village 117 of 117\nskipped frames and other files, and why: "
+      << options.out << "/skipped.csv\nderived from RUGD, do not "
+      << "redistribute\n";
   return kDone;
 }
 

@@ -124,7 +124,7 @@ int RunRun(RunArguments& arguments, const std::string& command_line) {
                                             {bus::BuildId(), command_line});
   if (!done.ok()) return Fail(done.error());
   for (const MethodRun& run : *runs) {
-    std::cout << run.folder << ": " << run.choice.info.title << "\n";
+    std::cout << run.folder << ": " << TitleWithGate(run.choice.info) << "\n";
   }
   return kDone;
 }

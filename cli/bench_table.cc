@@ -1,17 +1,14 @@
-#include <functional>
+#include <algorithm>
 #include <iostream>
-#include <map>
 #include <memory>
-#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "benchmark/detail_tables.h"
-#include "benchmark/paper_tables.h"
-#include "benchmark/switch_tables.h"
+#include "benchmark/named_tables.h"
 #include "cli/bench_commands.h"
 #include "cli/output.h"
 #include "output/output_file.h"
@@ -20,6 +17,8 @@ namespace terra::cli {
 namespace {
 
 using benchmark::LoadedRun;
+using benchmark::NamedTable;
+using benchmark::Shared;
 using benchmark::Table;
 using Runs = std::vector<LoadedRun>;
 
@@ -32,47 +31,11 @@ struct TableArguments {
   std::string out;
 };
 
-// A table that can be asked for; `varies`: its runs may differ in stride,
-// joints or case list, because it compares just these.
-struct NamedTable {
-  std::function<Result<Table>(const Runs&)> make;
-  bool varies = false;
-};
-
-const std::map<std::string, NamedTable>& Tables() {
-  static const std::map<std::string, NamedTable> kTables = {
-      {"comparison-easy", {[](const Runs& runs) {
-         return ComparisonTable(runs, "easy");
-       }}},
-      {"comparison-hard", {[](const Runs& runs) {
-         return ComparisonTable(runs, "hard");
-       }}},
-      {"proposals-easy", {[](const Runs& runs) {
-         return ProposalTable(runs, "easy");
-       }}},
-      {"proposals-hard", {[](const Runs& runs) {
-         return ProposalTable(runs, "hard");
-       }}},
-      {"paired-easy", {[](const Runs& runs) {
-         return PairedTable(runs, "easy");
-       }}},
-      {"paired-hard", {[](const Runs& runs) {
-         return PairedTable(runs, "hard");
-       }}},
-      {"oracle-gap", {benchmark::OracleGapTable, true}},
-      {"joints", {benchmark::JointsTable, true}},
-      {"ablation", {benchmark::AblationTable}},
-      {"noise", {benchmark::NoiseTable}},
-      {"rugd", {benchmark::RugdTable}},
-      {"latency", {benchmark::LatencyTable}},
-      {"runs", {benchmark::RunsTable, true}},
-  };
-  return kTables;
-}
-
 std::vector<std::string> TableNames() {
   std::vector<std::string> names;
-  for (const auto& [name, table] : Tables()) names.push_back(name);
+  for (const NamedTable& table : benchmark::NamedTables()) {
+    names.push_back(table.name);
+  }
   return names;
 }
 
@@ -84,38 +47,108 @@ std::string Format(const Table& table, const std::string& format) {
 }
 
 // Refuses rows that cannot stand together.
-Status CheckComparable(const Runs& runs, bool intersect) {
+Status CheckComparable(const Runs& runs, const NamedTable& table,
+                       bool intersect) {
+  std::set<Shared> varies = table.varies;
+  if (intersect) varies.insert(Shared::kCaseList);
   for (std::size_t i = 1; i < runs.size(); ++i) {
-    std::string why = WhyNotComparable(runs.front(), runs[i]);
-    const bool only_list = why.find("case list") != std::string::npos;
-    if (why.empty() || (intersect && only_list)) continue;
-    if (only_list) why += "; --intersect takes the cases that all have";
+    const auto mismatch = FindMismatch(runs.front(), runs[i], varies);
+    if (!mismatch.ok()) return mismatch.error();
+    if (!mismatch->has_value()) continue;
+    std::string why = (*mismatch)->text;
+    if ((*mismatch)->what == Shared::kCaseList) {
+      why += "; --intersect takes the cases that all have";
+    }
     return Error{ErrorCode::kInvalid, why};
   }
   return Done{};
 }
 
-int RunTable(const TableArguments& arguments) {
-  Result<Runs> runs = benchmark::LoadRuns(arguments.runs);
-  if (!runs.ok()) return Fail(runs.error());
-  if (!arguments.include_simulated) {
-    std::erase_if(*runs, [](const LoadedRun& run) {
-      return run.description.simulated;
-    });
-  }
-  const NamedTable& named = Tables().at(arguments.table);
-  if (!named.varies) {
-    const Status fit = CheckComparable(*runs, arguments.intersect);
-    if (!fit.ok()) return Fail(fit.error());
-  }
-  const bool intersect = arguments.intersect && !runs->empty();
+// Runs that were named one by one: all of them, or none.
+Result<Runs> TakeAll(Runs runs, const NamedTable& table, bool intersect) {
+  const Status fit = CheckComparable(runs, table, intersect);
+  if (!fit.ok()) return fit.error();
   if (intersect) {
-    const Status kept = benchmark::KeepCommonCases(*runs);
-    if (!kept.ok()) return Fail(kept.error());
+    const Status kept = benchmark::KeepCommonCases(runs);
+    if (!kept.ok()) return kept.error();
+  }
+  if (table.name == "runs") return runs;
+  Runs once = benchmark::WithoutDoubles(runs);
+  if (once.size() < runs.size()) {
+    std::cerr << "note: " << runs.size() - once.size()
+              << " runs are left out: each was made in the same way as another "
+                 "one of these\n";
+  }
+  return once;
+}
+
+bool Has(const Runs& runs, const LoadedRun& run) {
+  return std::any_of(runs.begin(), runs.end(), [&](const LoadedRun& other) {
+    return other.description.SameRow(run.description);
+  });
+}
+
+// Of the runs below a folder those that `report` would take. A run that was
+// named itself must be among them.
+Result<Runs> TakeAsReport(Runs runs, const TableArguments& arguments,
+                          const NamedTable& table) {
+  benchmark::SortRows(runs);
+  const auto selected = benchmark::SelectRuns(
+      runs, arguments.intersect ? benchmark::CaseLists::kCommon
+                                : benchmark::CaseLists::kSame);
+  if (!selected.ok()) return selected.error();
+  Runs rows = (*selected).*table.runs;
+  for (const LoadedRun& run : runs) {
+    const bool named = std::find(arguments.runs.begin(), arguments.runs.end(),
+                                 run.folder) != arguments.runs.end();
+    if (named && !Has(rows, run)) {
+      return Error{ErrorCode::kInvalid,
+                   run.folder + " cannot stand in " + table.name +
+                       " beside the runs that are found below the other "
+                       "folders; name all runs one by one"};
+    }
+  }
+  std::cerr << "note: " << rows.size() << " of " << runs.size()
+            << " runs stand in this table, as in `terra bench report`; name "
+               "runs one by one to have just these\n";
+  return rows;
+}
+
+void DropSimulated(Runs& runs) {
+  const std::size_t dropped = std::erase_if(runs, [](const LoadedRun& run) {
+    return run.description.simulated;
+  });
+  if (dropped > 0) {
+    std::cerr << "note: " << dropped
+              << " runs against a simulated model are left out; "
+                 "--include-simulated takes them\n";
+  }
+}
+
+Result<Runs> RowsOf(const TableArguments& arguments, const NamedTable& table) {
+  std::vector<std::string> others;
+  Result<Runs> runs = benchmark::LoadRuns(arguments.runs, &others);
+  if (!runs.ok()) return runs;
+  for (const std::string& other : others) {
+    std::cerr << "note: passed over: " << other << "\n";
+  }
+  if (!arguments.include_simulated) DropSimulated(*runs);
+  const bool all_named = std::all_of(
+      arguments.runs.begin(), arguments.runs.end(), benchmark::IsRunFolder);
+  return all_named ? TakeAll(*std::move(runs), table, arguments.intersect)
+                   : TakeAsReport(*std::move(runs), arguments, table);
+}
+
+int RunTable(const TableArguments& arguments) {
+  const NamedTable& named = benchmark::TableNamed(arguments.table);
+  const Result<Runs> runs = RowsOf(arguments, named);
+  if (!runs.ok()) return Fail(runs.error());
+  if (arguments.intersect && !runs->empty() && runs->front().num_rows == 0) {
+    return Fail({ErrorCode::kInvalid, "these runs have no case in common"});
   }
   Result<Table> table = named.make(*runs);
   if (!table.ok()) return Fail(table.error());
-  if (intersect) {
+  if (arguments.intersect && !runs->empty()) {
     table->notes.push_back("Only the " +
                            std::to_string(runs->front().num_rows) +
                            " cases that all runs have.");
@@ -140,8 +173,9 @@ void AddBenchTable(CLI::App& bench, int& exit_code) {
       ->check(CLI::IsMember(TableNames()));
   command
       .add_option("--runs", arguments->runs,
-                  "Run folders, or a folder above them; the first is the "
-                  "reference of paired tables")
+                  "Run folders: all of them stand in the table, the first is "
+                  "the reference of paired ones. Or folders above runs: those "
+                  "stand in it that `report` puts there")
       ->required()
       ->type_name("DIR ...");
   command.add_flag("--intersect", arguments->intersect,
@@ -154,7 +188,8 @@ void AddBenchTable(CLI::App& bench, int& exit_code) {
       ->type_name("FILE");
   command.footer(
       "Example:\n"
-      "  terra bench table comparison-hard --runs runs/search runs/shortcut");
+      "  terra bench table comparison-hard --runs runs/search runs/shortcut\n"
+      "  terra bench table oracle-gap --runs runs");
   command.callback([arguments, &exit_code] {
     exit_code = RunTable(*arguments);
   });

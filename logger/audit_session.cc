@@ -1,11 +1,11 @@
 #include "logger/audit_session.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 #include "logger/gate_state.h"
 #include "verifier/gate_codec.h"
+#include "verifier/gate_options.h"
 
 namespace terra::logger {
 namespace {
@@ -15,18 +15,6 @@ using terra_msg::verdict_t;
 
 // A bound on work; more than two have not been seen.
 constexpr std::size_t kMaxGates = 4;
-
-// The gate's only option that decides anything, from its CONFIG.
-double MarginIn(const std::string& config) {
-  constexpr std::string_view kKey = "margin=";
-  std::size_t at = config.find(kKey);
-  while (at != std::string::npos && at > 0 && config[at - 1] != '\n') {
-    at = config.find(kKey, at + 1);
-  }
-  return at == std::string::npos
-             ? 0.0
-             : std::strtod(config.c_str() + at + kKey.size(), nullptr);
-}
 
 std::int64_t Sum(std::int64_t a, std::int64_t b) {
   return Difference(a, Difference(0, b));
@@ -50,14 +38,27 @@ SessionAudit::SessionAudit(LogContents& contents, std::int64_t session,
       audit_(audit),
       later_(decisions_),
       causes_(contents, session, later_) {
-  options_.session = session;
   const auto config = contents_.configs.find(session);
   if (config != contents_.configs.end()) {
-    options_.margin = MarginIn(config->second.message.config_text);
+    Result<verifier::GateOptions> read =
+        verifier::ReadGateOptions(config->second.message.config_text);
+    if (read.ok()) {
+      options_ = *read;
+    } else {
+      bad_config_ = read.error().message;
+    }
   }
+  options_.session = session;
 }
 
 void SessionAudit::Run() {
+  if (!bad_config_.empty()) {
+    audit_.Add({Finding::Kind::kMissingInput, session_, 0,
+                "the CONFIG of this gate cannot be read, so its margin is not "
+                "known: " +
+                    bad_config_});
+    return;
+  }
   for (auto at = decisions_.begin(); at != decisions_.end(); ++at) Take(at);
 }
 

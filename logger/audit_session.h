@@ -52,7 +52,8 @@ class SessionAudit {
   Audit& audit_;
   LaterDecisions later_;
   DecisionCauses causes_;
-  verifier::GateOptions options_;
+  verifier::GateOptions options_;  // As the gate's CONFIG has them.
+  std::string bad_config_;         // Why they are not known; empty = they are.
 
   // Gates that decided as the log has it so far: more than one where it cannot
   // tell how far along a route before the robot was known to be. None = the

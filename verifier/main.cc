@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 
 #include "bus/advice_receiver.h"
-#include "bus/number_range.h"
 #include "bus/process.h"
+#include "verifier/gate_options.h"
 #include "verifier/verifier_node.h"
 
 namespace {
@@ -36,12 +36,7 @@ int main(int argc, char** argv) {
       "when it is feasible and strictly cheaper.\nexample: terra-verifier "
       "--margin 0.5";
   spec.add_options = [&](CLI::App& app) {
-    app.add_option("--margin", gate.margin,
-                   "a candidate must save more than this, in cost")
-        ->check(terra::bus::InRange(0.0, 1e9));
-    app.add_option("--replay-session", gate.session,
-                   "take anchors and poses of this session of a gate for one's "
-                   "own, to hear the log of that one; never on a robot");
+    terra::verifier::AddGateOptions(app, gate);
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {

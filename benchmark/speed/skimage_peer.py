@@ -41,7 +41,7 @@ def measure(case, costs):
 
 
 def main(folder):
-    for ends in sorted((folder / "maps").glob("*.csv")):
+    for ends in sorted((folder / "maps").glob("[!.]*.csv")):
         samples = folder / "samples" / f"skimage-{ends.name}"
         if samples.exists():
             continue

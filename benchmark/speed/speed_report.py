@@ -1,27 +1,24 @@
 """Makes tables and a plot of what terra-speed and its peers measured.
 
 usage: speed_report.py FOLDER [DOCS]
+       speed_report.py --redraw DOCS
 
 Reads FOLDER/samples/*.csv and FOLDER/machine.txt, prints the tables and writes
 them to FOLDER/speed.md, the plot to FOLDER/speed.svg. With DOCS also to
-DOCS/performance.md, between its markers, and DOCS/images/speed.svg.
+DOCS/performance.md, between its markers, and DOCS/images/speed.svg. --redraw
+makes that plot anew from the tables that stand in DOCS/performance.md.
 """
 
 import collections
 import csv
 import math
 import pathlib
+import re
 import shutil
 import statistics
 import sys
 
-import matplotlib
-
-matplotlib.use("svg")
-matplotlib.rcParams["svg.hashsalt"] = "terra"  # The same bytes every time.
-import matplotlib.pyplot as plt  # noqa: E402
-
-from docs_section import write_between_markers  # noqa: E402
+from docs_section import write_between_markers
 
 FAMILIES = ["easy", "hard"]
 GRAPH_PEERS = ["Boost.Graph A*", "LEMON A*"]
@@ -33,6 +30,10 @@ INSTRUCTIONS = ["AVX-512", "AVX2", "portable"]
 KNOWN = "search, {}, bounded"
 LATTICE = "lattice, search, {}"
 ALONE = "search, {}"
+# A median over fewer maps says more of these maps than of their size: it is a
+# point, not part of a line.
+MIN_TREND_MAPS = 5
+GROWTH = "### Searches by side: median, milliseconds\n"
 
 
 class Samples:
@@ -41,7 +42,7 @@ class Samples:
     def __init__(self, folder):
         self.times = collections.defaultdict(list)
         self.rates = collections.defaultdict(list)  # Microseconds per amount.
-        for path in sorted((folder / "samples").glob("*.csv")):
+        for path in sorted((folder / "samples").glob("[!.]*.csv")):
             with open(path, newline="") as file:
                 for row in csv.DictReader(file):
                     key = int(row["side"]), row["family"], row["work"]
@@ -64,6 +65,13 @@ class Samples:
     def sides(self):
         return sorted({side for side, family, _ in self.times
                        if family in FAMILIES})
+
+    def maps(self, side):
+        """How many of each family."""
+        return len(self.times[side, "easy", "floor"])
+
+    def works(self):
+        return search_works(self)
 
     def best(self):
         """The widest instruction set that was measured."""
@@ -202,12 +210,18 @@ def worst_rows(s):
 
 
 def number_of_maps(s):
-    return ", ".join(f"{len(s.times[side, 'easy', 'floor'])} at {side}"
-                     for side in s.sides())
+    return ", ".join(f"{s.maps(side)} at {side}" for side in s.sides())
+
+
+def side_heads(s):
+    """The sides; with their maps where those are too few for a trend."""
+    return [str(side) if s.maps(side) >= MIN_TREND_MAPS
+            else f"{side} ({s.maps(side)} map{'s'[:s.maps(side) > 1]})"
+            for side in s.sides()]
 
 
 def markdown(s, machine):
-    sides = [str(side) for side in s.sides()]
+    sides = side_heads(s)
     time = lambda *key: milliseconds(s.median(*key))  # noqa: E731
     rate = lambda *key: f"{1000 * s.rate(*key):.2f}"  # noqa: E731
     chain = ["lattice r=50", "shortcut", "baseline, search, verify", "LLM input"]
@@ -220,7 +234,7 @@ def markdown(s, machine):
         "### Searches, 500 x 500: milliseconds, and times the bounded search\n",
         table(["Work", "Easy median", "p95", "times", "Hard median", "p95",
                "times"], search_rows(s)),
-        "### Searches by side: median, milliseconds\n",
+        GROWTH,
         table(["Work", "Maps", *sides], growth_rows(s, search_works(s), time)),
         "### Searches by side: median, nanoseconds per cell of the map\n",
         table(["Work", "Maps", *sides], growth_rows(s, search_works(s), rate)),
@@ -234,19 +248,74 @@ def markdown(s, machine):
     ])
 
 
+class Documented:
+    """The medians of searches as a document's tables have them."""
+
+    def __init__(self, text):
+        maps = re.search(r"^Maps of each subset: (.*)\.$", text, re.M).group(1)
+        self._maps = {int(side): int(number) for number, side
+                      in re.findall(r"(\d+) at (\d+)", maps)}
+        rows = text.split(GROWTH)[1].strip().split("\n\n")[0].splitlines()[2:]
+        self._medians = {}
+        for row in rows:
+            work, family, *times = [c.strip() for c in row.strip("|").split("|")]
+            for side, time in zip(self.sides(), times):
+                if time:
+                    self._medians[side, family, work] = 1000 * float(time)
+
+    def sides(self):
+        return sorted(self._maps)
+
+    def maps(self, side):
+        return self._maps[side]
+
+    def works(self):
+        return list(dict.fromkeys(work for _, _, work in self._medians))
+
+    def has(self, side, family, work):
+        return (side, family, work) in self._medians
+
+    def median(self, side, family, work):
+        """In microseconds."""
+        return self._medians[side, family, work]
+
+
+def trend_and_points(s, family, work):
+    """Two lists of (side, milliseconds): where there are maps enough for a line,
+    and where not."""
+    trend, points = [], []
+    for side in s.sides():
+        if s.has(side, family, work):
+            place = trend if s.maps(side) >= MIN_TREND_MAPS else points
+            place.append((side, s.median(side, family, work) / 1000))
+    return trend, points
+
+
 def plot(s, path):
+    import matplotlib
+
+    matplotlib.use("svg")
+    matplotlib.rcParams["svg.hashsalt"] = "terra"  # The same bytes every time.
+    import matplotlib.pyplot as plt
+
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), sharey=True)
     for axis, family in zip(axes, FAMILIES):
-        for work in search_works(s):
-            sides = [side for side in s.sides() if s.has(side, family, work)]
-            axis.plot(sides, [s.median(side, family, work) / 1000
-                              for side in sides],
-                      marker="o", markersize=3, label=work,
-                      linestyle=":" if work in [*PEERS, "floor"] else "-")
+        for work in s.works():
+            trend, points = trend_and_points(s, family, work)
+            line, = axis.plot(
+                *zip(*trend), marker="o", markersize=3, label=work,
+                linestyle=":" if work in [*PEERS, "floor"] else "-")
+            line.set_gid(f"trend {family} {work}")
+            if points:
+                single, = axis.plot(*zip(*points), linestyle="", marker="o",
+                                    markersize=4, fillstyle="none",
+                                    color=line.get_color())
+                single.set_gid(f"points {family} {work}")
         axis.set_title(family)
         axis.set_xscale("log", base=2)
         axis.set_yscale("log")
-        axis.set_xticks(s.sides(), [str(side) for side in s.sides()])
+        axis.set_xticks(s.sides(), [head.replace(" ", "\n", 1)
+                                    for head in side_heads(s)], fontsize=8)
         axis.set_xlabel("side of the map, cells")
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("median, ms")
@@ -270,5 +339,13 @@ def main(folder, docs=None):
     print(text)
 
 
+def redraw(docs):
+    plot(Documented((docs / "performance.md").read_text()),
+         docs / "images" / "speed.svg")
+
+
 if __name__ == "__main__":
-    main(*map(pathlib.Path, sys.argv[1:]))
+    if sys.argv[1] == "--redraw":
+        redraw(pathlib.Path(sys.argv[2]))
+    else:
+        main(*map(pathlib.Path, sys.argv[1:]))

@@ -3,6 +3,9 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -10,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/case_result.h"
+#include "benchmark/named_tables.h"
 #include "benchmark/results_reader.h"
+#include "benchmark/run_fields.h"
 #include "terrain/files/whole_file.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temp_folder.h"
@@ -168,6 +173,154 @@ TEST_F(BenchCommand, RowsThatCannotStandTogetherAreRefused) {
                 folder_.Path("a"), folder_.Path("b")});
   EXPECT_EQ(table.exit_code, 1);
   EXPECT_THAT(table.output, HasSubstr("differ in their stride"));
+}
+
+TEST_F(BenchCommand, CommonCasesHideNoOtherDifference) {
+  // The folder is called as a reason is.
+  std::vector<std::string> coarse = RunArguments("case list/a");
+  coarse.insert(coarse.end(), {"--cases", "30"});
+  std::vector<std::string> fine = RunArguments("b");
+  fine.insert(fine.end(), {"--stride", "20", "--cases", "20"});
+  std::vector<std::string> few = RunArguments("c");
+  few.insert(few.end(), {"--cases", "20"});
+  for (const auto& run : {coarse, fine, few}) {
+    ASSERT_EQ(RunToEnd(run).exit_code, 0);
+  }
+  const auto table = [&](const std::string& other, bool intersect) {
+    std::vector<std::string> arguments = {terra_,
+                                          "bench",
+                                          "table",
+                                          "comparison-hard",
+                                          "--runs",
+                                          folder_.Path("case list/a"),
+                                          folder_.Path(other)};
+    if (intersect) arguments.emplace_back("--intersect");
+    return RunToEnd(arguments);
+  };
+  const RunResult refused = table("b", true);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("differ in their stride"));
+  const RunResult lists = table("c", false);
+  EXPECT_EQ(lists.exit_code, 1);
+  EXPECT_THAT(lists.output,
+              HasSubstr("differ in their case list; --intersect"));
+  const RunResult common = table("c", true);
+  EXPECT_EQ(common.exit_code, 0) << common.output;
+  EXPECT_THAT(common.output, HasSubstr("Only the 20 cases that all runs have"));
+}
+
+TEST_F(BenchCommand, EachTableOfAReportIsOneCommand) {
+  // As scripts/bench makes them: strides, joint rules, methods with and without
+  // fallback, some cases one at a time, another dataset.
+  const auto run = [&](const std::string& out,
+                       std::vector<std::string> options) {
+    options.insert(options.begin(), {terra_, "bench", "run", "--out",
+                                     folder_.Path("runs/" + out)});
+    const RunResult ran = RunToEnd(options);
+    ASSERT_EQ(ran.exit_code, 0) << ran.output;
+  };
+  const std::string data = folder_.Path("data");
+  for (const char* stride : {"20", "50"}) {
+    run(std::string("stride-") + stride,
+        {"--dataset", data, "--method", "advisor", "--backend",
+         "search,shortcut", "--stride", stride});
+  }
+  for (const char* method : {"coarse", "corridor", "straight-line"}) {
+    run(method, {"--dataset", data, "--method", method});
+  }
+  run("joints", {"--dataset", data, "--method", "coarse", "--joints", "cell"});
+  run("corners",
+      {"--dataset", data, "--method", "coarse", "--corner-cutting", "off"});
+  run("alone",
+      {"--dataset", data, "--method", "coarse", "--cases", "5", "--jobs", "1"});
+  run("recording", {"--dataset", TERRA_TEST_DATA "/llm-answers", "--method",
+                    "advisor", "--backend", "replay", "--recording",
+                    TERRA_TEST_DATA "/recordings/advisor-32.jsonl"});
+  folder_.Write("runs/.DS_Store", "Bud1");
+  const RunResult made =
+      RunToEnd({terra_, "bench", "report", "--runs", folder_.Path("runs"),
+                "--out", folder_.Path("report")});
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  ASSERT_EQ(NamedTables().size(), 13U);
+  for (const NamedTable& table : NamedTables()) {
+    SCOPED_TRACE(table.name);
+    const std::string out = folder_.Path("table.csv");
+    const RunResult printed =
+        RunToEnd({terra_, "bench", "table", table.name, "--runs",
+                  folder_.Path("runs"), "--format", "csv", "--out", out});
+    EXPECT_EQ(printed.exit_code, 0) << printed.output;
+    EXPECT_EQ(ReadWholeFile(out, 1 << 20).value(),
+              ReadWholeFile(
+                  folder_.Path("report/tables/" + table.name + ".csv"), 1 << 20)
+                  .value());
+  }
+  // A run that was named must have a row.
+  const RunResult refused =
+      RunToEnd({terra_, "bench", "table", "comparison-hard", "--runs",
+                folder_.Path("runs"), folder_.Path("runs/joints")});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("runs/joints cannot stand in"));
+}
+
+// What each option of `bench run` comes to: a field of run.json that decides
+// figures, or why it decides none. A new option must be entered here.
+TEST_F(BenchCommand, EveryOptionOfARunIsAFieldOfRunJsonOrDecidesNoFigure) {
+  const std::map<std::string, std::string> fields = {
+      {"--dataset", "/configuration/dataset/digest"},
+      {"--method", "/configuration/method"},
+      {"--backend", "/configuration/backend"},
+      {"--gate", "/configuration/fallback"},
+      {"--polish", "/configuration/settings/polish"},
+      {"--cases", "/configuration/case_list_digest"},
+      {"--repeats", "/configuration/repeats"},
+      {"--stride", "/configuration/stride"},
+      {"--joints", "/configuration/joints"},
+      {"--corner-cutting", "/configuration/cost_model/corner_cutting"},
+      {"--clearance", "/configuration/cost_model/clearance_cells"},
+      {"--overlay", "/configuration/settings/overlay"},
+      {"--route-text", "/configuration/settings/route_text"},
+      {"--rea", "/configuration/settings/rea"},
+      {"--picture", "/configuration/settings/axes"},
+      {"--regions", "/configuration/settings/regions"},
+      {"--stretches", "/configuration/settings/stretches"},
+      {"--candidates", "/configuration/settings/candidates"},
+      {"--references", "/configuration/settings/reference_pool"},
+      {"--noise", "/configuration/settings/noise"},
+      {"--seed", "/configuration/settings/seed"},
+      {"--rounds", "/configuration/settings/rounds"},
+      {"--model", "/configuration/settings/model"},
+      {"--max-output-tokens",
+       "/configuration/settings/model_settings/max_output_tokens"},
+      {"--effort", "/configuration/settings/model_settings/effort"},
+      {"--image-detail", "/configuration/settings/model_settings/image_detail"},
+      {"--base-url", "/configuration/settings/endpoint_class"},
+      {"--real-model", "/configuration/simulated"},
+      {"--deadline", "/configuration/settings/rounds_deadline_s"}};
+  const std::set<std::string> others = {
+      // Which part, where to, how fast.
+      "--help", "--shard", "--out", "--jobs", "--record", "--images", "--price",
+      // How a call comes through. Without an answer a row is incomplete.
+      "--anthropic-version", "--anthropic-bearer", "--try-timeout", "--retries",
+      "--max-retry-wait", "--calls-per-minute", "--spend-per-hour",
+      "--breaker-failures", "--breaker-wait", "--breaker-max-wait",
+      // Where answers come from; who gave them is in run.json.
+      "--exchange", "--recording"};
+  const RunResult help = RunToEnd({terra_, "bench", "run", "--help"});
+  const std::regex option(R"(\n +(?:-\w,)?(--[a-z-]+))");
+  std::size_t met = 0;
+  for (std::sregex_iterator it(help.output.begin(), help.output.end(), option);
+       it != std::sregex_iterator(); ++it, ++met) {
+    const std::string name = (*it)[1];
+    const auto field = fields.find(name);
+    if (field == fields.end()) {
+      EXPECT_TRUE(others.contains(name)) << name;
+      continue;
+    }
+    const RunField* declared = FindField(field->second);
+    ASSERT_NE(declared, nullptr) << name;
+    EXPECT_NE(declared->role, FieldRole::kOrigin) << name;
+  }
+  EXPECT_EQ(met, fields.size() + others.size());
 }
 
 TEST_F(BenchCommand, WrongUsageIsExitCodeTwo) {

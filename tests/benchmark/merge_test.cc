@@ -79,7 +79,7 @@ TEST_F(MergeTest, ShardsMakeTheRunInOnePiece) {
   EXPECT_TRUE(runs->at(0).complete());
   // Side by side the shards did not take one case at a time.
   EXPECT_EQ(runs->at(0).description.jobs, 3);
-  EXPECT_EQ(WhyNotComparable(runs->at(0), runs->at(1)), "");
+  EXPECT_FALSE(FindMismatch(runs->at(0), runs->at(1)).value());
 }
 
 TEST_F(MergeTest, ColumnsOfCandidatesAreKept) {
@@ -178,9 +178,18 @@ TEST_F(MergeTest, RunsThatDifferCannotStandInOneTable) {
   auto runs =
       LoadRuns({folder_.Path("a"), folder_.Path("b"), folder_.Path("c")});
   ASSERT_TRUE(runs.ok());
-  EXPECT_THAT(WhyNotComparable(runs->at(0), runs->at(1)), HasSubstr("stride"));
-  EXPECT_THAT(WhyNotComparable(runs->at(0), runs->at(2)),
-              HasSubstr("case list"));
+  const auto b = FindMismatch(runs->at(0), runs->at(1)).value();
+  ASSERT_TRUE(b);
+  EXPECT_EQ(b->what, Shared::kStride);
+  EXPECT_THAT(b->text, HasSubstr("stride"));
+  EXPECT_EQ(FindMismatch(runs->at(0), runs->at(2)).value()->what,
+            Shared::kCaseList);
+  EXPECT_FALSE(
+      FindMismatch(runs->at(0), runs->at(2), {Shared::kCaseList}).value());
+  // Where lists may differ, nothing else may.
+  EXPECT_EQ(
+      FindMismatch(runs->at(1), runs->at(2), {Shared::kCaseList}).value()->what,
+      Shared::kStride);
   std::vector<LoadedRun> common = {runs->at(0), runs->at(2)};
   ASSERT_TRUE(KeepCommonCases(common).ok());
   for (const LoadedRun& run : common) {

@@ -85,10 +85,13 @@ TEST_F(Replay, ASecondReplayGivesTheSameRows) {
 TEST_F(Replay, TheRowNamesTheModelThatTheReplyNamed) {
   const LoadedRun run = Run("raw", false);
   EXPECT_EQ(RowTitle(run),
-            "LLM-Advisor: unnamed-llm-native (asked for unnamed-llm-native; "
-            "recorded 2026-11-26)");
+            "LLM-Advisor: unnamed-llm-native (asked for unnamed-llm-native of "
+            "exchange by replay; recorded 2026-11-26)");
+  EXPECT_EQ(RowTitle(Run("polished", true)),
+            "LLM-Advisor: unnamed-llm-native (asked for unnamed-llm-native of "
+            "exchange by replay; polished; recorded 2026-11-26)");
   EXPECT_TRUE(IsPlain(run));
-  EXPECT_EQ(SettingOf(run, "noise", ""), "0");
+  EXPECT_EQ(SettingOf(run, "noise"), "0");
   // It stands for no provider's row.
   EXPECT_THAT(ToMarkdown(ComparisonTable({run}, "easy")),
               HasSubstr("LLM-Advisor (gpt-5.5) | not measured"));

@@ -6,13 +6,16 @@
 #include "benchmark/detail_tables.h"
 #include "benchmark/paper_tables.h"
 #include "benchmark/run_labels.h"
+#include "benchmark/switch_tables.h"
 
 namespace terra::benchmark {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 
 void SetScores(LoadedRun& run, std::vector<Score> scores) {
@@ -152,26 +155,54 @@ TEST(SelectRuns, OfNothingIsNothing) {
   EXPECT_THAT(s.others, IsEmpty());
 }
 
-TEST(WhyNotComparable, NamesTheCaseWithAnotherBaseline) {
+std::string TextOfMismatch(const LoadedRun& a, const LoadedRun& b) {
+  const auto mismatch = FindMismatch(a, b).value();
+  return mismatch ? mismatch->text : "";
+}
+
+TEST(FindMismatch, NamesTheCaseWithAnotherBaseline) {
   const LoadedRun a = Refiner("a", "search", 3);
   LoadedRun b = Refiner("b", "shortcut", 3);
-  EXPECT_EQ(WhyNotComparable(a, b), "");
+  EXPECT_EQ(TextOfMismatch(a, b), "");
   std::vector<Score> scores = ScoresOf(b);
   // Other order, a row less: still the same cases where both have them.
   std::swap(scores[0], scores[4]);
   scores.pop_back();
   SetScores(b, scores);
   EXPECT_FALSE(b.complete());
-  EXPECT_EQ(WhyNotComparable(a, b), "");
+  EXPECT_EQ(TextOfMismatch(a, b), "");
   scores[2].baseline_cost = 101;
   SetScores(b, scores);
-  EXPECT_EQ(WhyNotComparable(a, b),
+  EXPECT_EQ(TextOfMismatch(a, b),
             "a and b differ in their map or baseline of case easy2");
   scores[2].baseline_cost = 100;
   scores[3].map_id = 7;
   SetScores(b, scores);
-  EXPECT_EQ(WhyNotComparable(a, b),
+  EXPECT_EQ(TextOfMismatch(a, b),
             "a and b differ in their map or baseline of case hard0");
+}
+
+TEST(FindMismatch, AnUnreadableRunIsAnErrorAndNoMismatch) {
+  LoadedRun gone = Refiner("gone", "search", 3);
+  gone.cases_digest = 1;
+  gone.read = [](const std::function<void(const Score&)>&) -> Status {
+    return Error{ErrorCode::kNotFound, "gone/results.csv: no such file"};
+  };
+  EXPECT_FALSE(FindMismatch(Refiner("a", "search", 3), gone).ok());
+  EXPECT_FALSE(SelectRuns({Refiner("a", "shortcut", 3), gone}).ok());
+}
+
+TEST(FindMismatch, WhatATableVariesHidesNothingElse) {
+  const LoadedRun a = Refiner("a", "search", 3);
+  LoadedRun b = Refiner("b", "search", 4);
+  b.description.stride = 20;
+  b.description.joints = "cell";
+  EXPECT_EQ(FindMismatch(a, b).value()->what, Shared::kCaseList);
+  EXPECT_EQ(FindMismatch(a, b, {Shared::kCaseList}).value()->what,
+            Shared::kStride);
+  EXPECT_EQ(
+      FindMismatch(a, b, {Shared::kCaseList, Shared::kStride}).value()->what,
+      Shared::kJoints);
 }
 
 TEST(SortRows, PutsTheBoundsLast) {
@@ -232,12 +263,130 @@ TEST(ProposalTable, ShowsHowAnswersVaryOverRepeats) {
               ::testing::Not(HasSubstr("Repeats")));
 }
 
+// The rows of a table that begin with these cells.
+std::vector<std::string> RowsWith(const Table& table,
+                                  const std::string& first) {
+  std::vector<std::string> rows;
+  for (const TableBlock& block : table.blocks) {
+    for (const auto& row : block.rows) {
+      if (block.published || row.front().text != first) continue;
+      rows.push_back(row.back().text);
+    }
+  }
+  return rows;
+}
+
+TEST(AblationTable, HasOnlyRunsWhoseOtherSettingsAreThePapers) {
+  const std::string paper = R"({"provider":"openai","model":"gpt-5.5")";
+  std::vector<LoadedRun> runs;
+  for (const char* beyond :
+       {R"("axes":true)", R"("regions":true)", R"("stretches":true)",
+        R"("candidates":3)", R"("rounds":2)", R"("polish":true)",
+        R"("noise":5)", R"("model_settings":{"effort":"high"})",
+        R"("temperature":0.7)"}) {
+    runs.push_back(Model(beyond, 2, paper + "," + beyond + "}"));
+    EXPECT_FALSE(IsOfAblation(runs.back())) << beyond;
+  }
+  const Table none = AblationTable(runs);
+  ASSERT_EQ(RowsWith(none, "full advisor").size(), 1U);
+  EXPECT_THAT(RowsWith(none, "full advisor").front(),
+              HasSubstr("not measured"));
+  EXPECT_THAT(none.notes.back(), HasSubstr("effort high"));
+  // Nor do they stand for a row of the main comparison.
+  EXPECT_EQ(
+      RowsWith(ComparisonTable(runs, "easy"), "LLM-Advisor (gpt-5.5)").size(),
+      1U);
+  runs.push_back(Model("full", 2, paper + "}"));
+  runs.push_back(Model("bare", 2, paper + R"(,"overlay":false})"));
+  const Table both = AblationTable(runs);
+  EXPECT_EQ(RowsWith(both, "full advisor").size(), 2U);  // Of two subsets.
+  EXPECT_EQ(RowsWith(both, "without overlay").size(), 2U);
+  EXPECT_EQ(
+      RowsWith(ComparisonTable(runs, "easy"), "LLM-Advisor (gpt-5.5)").size(),
+      0U);
+}
+
+TEST(OracleGapTable, MixesInNeitherNoiseNorAblation) {
+  const std::string paper = R"({"provider":"openai","model":"gpt-5.5")";
+  LoadedRun other = Refiner("other stride", "shortcut", 2);
+  other.description.stride = 20;
+  const std::vector<LoadedRun> runs = {
+      Model("full", 2, paper + "}"),
+      Model("noisy", 2, paper + R"(,"noise":5})"),
+      Model("bare", 2, paper + R"(,"rea":false})"), other};
+  const Table table = OracleGapTable(runs);
+  EXPECT_EQ(table.blocks.front().rows.size(), 4U);
+  EXPECT_THAT(table.notes.back(),
+              AllOf(HasSubstr("noisy: "), HasSubstr("bare: ")));
+  const Selection s = SelectRuns(runs).value();
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("full"));
+  EXPECT_THAT(Folders(s.gap), ElementsAre("full", "other stride"));
+  EXPECT_THAT(Folders(s.ablation), ElementsAre("full", "bare"));
+  EXPECT_THAT(Folders(s.noise), ElementsAre("full", "noisy"));
+  EXPECT_THAT(s.others, IsEmpty());
+}
+
+TEST(OracleGapTable, NamesThePapersRowsThatWereNotMeasured) {
+  const LoadedRun full =
+      Model("full", 2, R"({"provider":"openai","model":"gpt-5.5"})");
+  const std::string text = ToCsv(OracleGapTable({full}));
+  EXPECT_THAT(text, HasSubstr("Not measured here,hard,10,LLM-Advisor "
+                              "(gpt-5.5),not measured; OPENAI_API_KEY=... "));
+  EXPECT_THAT(text, HasSubstr("--stride 100 --out "));
+  // At 50 it was, of both subsets.
+  EXPECT_THAT(text, Not(HasSubstr("here,easy,50,LLM-Advisor (gpt-5.5)")));
+  EXPECT_THAT(text, Not(HasSubstr("here,hard,50,LLM-Advisor (gpt-5.5)")));
+  const std::string empty = ToCsv(OracleGapTable({}));
+  EXPECT_THAT(empty, HasSubstr("here,easy,50,LLM-Advisor (gpt-5.5),not mea"));
+}
+
+TEST(ComparisonTable, ARunWithoutCasesOfASubsetMeasuredNoRowOfIt) {
+  LoadedRun hard =
+      Model("hard", 2, R"({"provider":"openai","model":"gpt-5.5"})");
+  std::vector<Score> scores = ScoresOf(hard);
+  std::erase_if(scores, [](const Score& score) {
+    return score.group == "easy";
+  });
+  SetScores(hard, scores);
+  const std::string row = "LLM-Advisor (gpt-5.5)";
+  EXPECT_EQ(RowsWith(ComparisonTable({hard}, "hard"), row).size(), 0U);
+  EXPECT_EQ(RowsWith(ComparisonTable({hard}, "easy"), row).size(), 1U);
+}
+
+TEST(NoiseTable, ShowsEveryPercentage) {
+  const std::string text = ToCsv(
+      NoiseTable({Model("7", 2, R"({"noise":7.5})"), Model("0", 2, "{}")}));
+  EXPECT_THAT(text, HasSubstr(",easy,7.5,"));
+  EXPECT_LT(text.find(",easy,0,"), text.find(",easy,7.5,"));
+}
+
+TEST(SelectRuns, OfARowMadeTwiceACompleteRunCounts) {
+  LoadedRun shard = Refiner("a shard", "shortcut", 5, 1);
+  std::vector<Score> scores = ScoresOf(shard);
+  scores.resize(4);
+  SetScores(shard, scores);
+  const Selection s =
+      SelectRuns({shard, Refiner("whole", "shortcut", 5, 2)}).value();
+  EXPECT_THAT(Folders(s.comparison), ElementsAre("whole"));
+}
+
+TEST(SelectRuns, RunsOfOneConfigurationWithDifferentModelsAreTwoRows) {
+  LoadedRun first = Model("first", 2, "{}");
+  LoadedRun second = Model("second", 2, "{}");
+  first.description.models = {"gpt-5.5-2026-04-23"};
+  second.description.models = {"gpt-5.5-2026-10-01"};
+  EXPECT_TRUE(first.description.SameFigures(second.description));
+  EXPECT_THAT(Folders(SelectRuns({first, second}).value().comparison),
+              ElementsAre("first", "second"));
+}
+
 TEST(RowTitle, OfARecordingSaysWhenItWasMade) {
   LoadedRun run = Model("replay", 1, R"({"model":"asked"})");
   run.description.models = {"answered"};
   run.description.recorded = {"2026-01-31T23:59:59Z", "2026-01-31T23:59:59Z"};
   EXPECT_EQ(RowTitle(run),
-            "openai: answered (asked for asked; recorded 2026-01-31)");
+            "openai: answered (asked for asked of openai; recorded "
+            "2026-01-31)");
   run.description.recorded.Add(std::string("2026-02-02T00:00:00Z"));
   EXPECT_THAT(RowTitle(run), HasSubstr("recorded 2026-01-31 to 2026-02-02)"));
 }

@@ -55,12 +55,51 @@ TEST_F(RugdTest, NamesGiveGroupAndSequenceInBothLayouts) {
   folder_.Write("masks/colormap.txt", "");
   const auto frames = FindRugdFrames(folder_.Path("masks"));
   ASSERT_TRUE(frames.ok()) << ErrorMessage(frames);
-  ASSERT_EQ(frames->size(), 2U);
-  EXPECT_EQ((*frames)[0].group, "creek");
-  EXPECT_EQ((*frames)[0].sequence, "creek");
-  EXPECT_EQ((*frames)[1].name, "trail-10_00001");
-  EXPECT_EQ((*frames)[1].group, "trail");
-  EXPECT_EQ((*frames)[1].sequence, "trail-10");
+  const std::vector<RugdFrame>& found = frames->frames;
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].group, "creek");
+  EXPECT_EQ(found[0].sequence, "creek");
+  EXPECT_EQ(found[1].name, "trail-10_00001");
+  EXPECT_EQ(found[1].group, "trail");
+  EXPECT_EQ(found[1].sequence, "trail-10");
+}
+
+TEST_F(RugdTest, WhatIsNoFrameIsListedAndAllElseConverted) {
+  Write("creek/creek_00001.png", Mask(false));
+  Write("creek/creek_00011.PNG", Mask(false));
+  Write("copy/creek_00001.png", Mask(false));
+  Write(".Trash-1000/creek_00021.png", Mask(false));
+  folder_.Write("masks/creek/._creek_00001.png", "Mac OS X        \2\0\0");
+  folder_.Write("masks/.DS_Store", "Bud1");
+  folder_.Write("masks/creek/Thumbs.db", "x");
+  folder_.Write("masks/creek/creek_00031.png", "");
+  folder_.Write("masks/creek/contact_sheet.png", "no mask");
+  fs::create_directories(folder_.Path("masks/creek_00041.png"));
+  cv::Mat foreign = Mask(false);
+  foreign.at<cv::Vec3b>(7, 3) = {1, 2, 3};
+  Write("creek/creek_00051.png", foreign);
+  const auto counts = ConvertRugd(Options());
+  ASSERT_TRUE(counts.ok()) << ErrorMessage(counts);
+  ASSERT_EQ(counts->size(), 1U);
+  EXPECT_EQ(counts->front().used, 2);
+  EXPECT_EQ(counts->front().frames, 4);
+  const std::string skipped =
+      ReadWholeFile(folder_.Path("out/skipped.csv"), 10'000).value();
+  for (const char* name :
+       {"\n.Trash-1000,hidden", "\ncreek/._creek_00001.png,hidden",
+        "\n.DS_Store,hidden", "\ncreek/Thumbs.db,not called",
+        "\ncreek/contact_sheet.png,not called", "\ncreek_00031,",
+        "\ncreek/creek_00001.png,the same as ", "\ncreek_00051,", "(3, 7)"}) {
+    EXPECT_THAT(skipped, HasSubstr(name));
+  }
+  EXPECT_EQ(ReadDataset(Options().out).value().cases.size(), 2U);
+}
+
+TEST_F(RugdTest, TwoDifferentMasksOfOneNameAreRefused) {
+  Write("a/creek_00001.png", Mask(false));
+  Write("b/creek_00001.png", Mask(true));
+  EXPECT_THAT(ErrorMessage(ConvertRugd(Options())),
+              HasSubstr("stands there twice, and not the same"));
 }
 
 TEST_F(RugdTest, EndsLieInOneComponentFarEnoughApartAndAreJoined) {

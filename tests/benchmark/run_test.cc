@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/generate_dataset.h"
+#include "benchmark/loaded_run.h"
 #include "benchmark/results_reader.h"
 #include "benchmark/run_description.h"
 #include "terrain/digest.h"
@@ -270,6 +271,33 @@ TEST_F(RunTest, ListedCasesStandInOrderOfTheDataset) {
   EXPECT_THAT(ErrorMessage(RunMethods(dataset_, options,
                                       {Named("coarse", "", "other")}, {})),
               HasSubstr("has no case 'easy_0009'"));
+}
+
+TEST_F(RunTest, ProgressNamesTheMethods) {
+  EXPECT_EQ(
+      ProgressTitle({Named("advisor", "search", "a"),
+                     Named("advisor", "band", "b"), Named("coarse", "", "c")}),
+      "run advisor search, advisor band, coarse");
+}
+
+TEST_F(RunTest, AFolderAboveRunsMayHoldOtherThings) {
+  ASSERT_TRUE(RunMethods(dataset_, {},
+                         {Named("coarse", "", "runs/coarse"),
+                          Named("coarse", "", "runs/.old/coarse")},
+                         {})
+                  .ok());
+  folder_.Write("runs/.DS_Store", "Bud1");
+  folder_.Write("runs/coarse/._run.json", "Mac OS X");
+  folder_.Write("runs/elsewhere/run.json", R"({"project": "other"})");
+  std::filesystem::create_directories(folder_.Path("runs/odd/run.json"));
+  std::vector<std::string> others;
+  const auto runs = LoadRuns({folder_.Path("runs")}, &others);
+  ASSERT_TRUE(runs.ok()) << ErrorMessage(runs);
+  ASSERT_EQ(runs->size(), 1U);
+  ASSERT_EQ(others.size(), 1U);
+  EXPECT_THAT(others.front(), HasSubstr("elsewhere/run.json: not written by"));
+  // A run that was named is meant.
+  EXPECT_FALSE(LoadRuns({folder_.Path("runs/elsewhere")}).ok());
 }
 
 TEST_F(RunTest, UnknownMethodsAndBackendsAreNamedWithThoseThereAre) {

@@ -316,6 +316,23 @@ TEST(Audit, TheTimeOfTheCheckAndTheEnvelopeMayDiffer) {
   EXPECT_TRUE(audit.clean()) << Text(audit);
 }
 
+TEST(Audit, AConfigThatCannotBeReadIsNotTakenForAMarginOfZero) {
+  Messages messages = EventfulRun();
+  for (bus::RawMessage& message : messages) {
+    auto config = bus::Decode<terra_msg::config_t>(message.bytes);
+    if (message.channel != bus::Channel::kConfig || !config) continue;
+    config->config_text = "margin=much\n";
+    message.bytes = bus::Encode(*config);
+  }
+  const Audit audit = AuditOf(messages);
+  EXPECT_EQ(audit.verdicts + audit.deployed, 0);
+  ASSERT_FALSE(audit.clean());
+  EXPECT_EQ(audit.findings.front().kind, Finding::Kind::kMissingInput);
+  EXPECT_NE(audit.findings.front().what.find("margin is not known"),
+            std::string::npos)
+      << Text(audit);
+}
+
 TEST(Audit, AMissingDecisionIsAGap) {
   Messages messages = EventfulRun();
   std::erase_if(messages, [](const bus::RawMessage& message) {

@@ -60,6 +60,7 @@ void Heartbeat::SendStatus(const Node& node) {
   counters.emplace_back("send_failed", bus_.counters().send_failed);
   counters.emplace_back("oversized", bus_.counters().oversized);
   counters.emplace_back("queue_dropped", inbox_.dropped());
+  counters.emplace_back("log_dropped", LogLinesDropped());
   node.AddCounters(counters);
   status.num_counters = static_cast<std::int32_t>(counters.size());
   for (const auto& [counter, value] : counters) {
@@ -74,7 +75,8 @@ void Heartbeat::SendStatus(const Node& node) {
   }
   logged_state_ = status.state;
   logged_error_ = status.last_error;
-  NotifyServiceManager("WATCHDOG=1\nSTATUS=" + status.state);
+  NotifyServiceManager((node.works() ? "WATCHDOG=1\nSTATUS=" : "STATUS=") +
+                       status.state);
 }
 
 void Heartbeat::SendConfig() {

@@ -45,6 +45,10 @@ class Node {
   virtual std::string last_error() const { return malformed_error_; }
   virtual void AddCounters(Counters& counters) const;
 
+  /// False when the process hangs in a way that only a restart mends; the
+  /// service manager's watchdog is not fed then.
+  virtual bool works() const { return true; }
+
   /// True when the process should end by itself.
   virtual bool done() const { return false; }
   /// Called once when the process ends in order, before exit_code.

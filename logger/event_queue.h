@@ -40,7 +40,12 @@ class EventQueue {
   };
   Batch Take();
 
+  /// Appends a batch of another queue; what does not fit is refused.
+  void Push(Batch batch);
+
  private:
+  bool HasRoomFor(std::size_t channel_bytes, std::size_t data_bytes);
+
   const std::size_t max_bytes_;
   std::mutex mutex_;
   Batch batch_;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include "bus/message_texts.h"
 
@@ -57,7 +58,9 @@ LogWriter::LogWriter(LogWriter&& other) noexcept
       since_mark_(std::move(other.since_mark_)),
       since_mark_from_(other.since_mark_from_),
       events_since_mark_(other.events_since_mark_),
-      num_marks_(other.num_marks_) {}
+      num_marks_(other.num_marks_),
+      torn_(other.torn_),
+      synced_events_gone_(other.synced_events_gone_) {}
 
 LogWriter& LogWriter::operator=(LogWriter&& other) noexcept {
   std::swap(fd_, other.fd_);
@@ -70,6 +73,8 @@ LogWriter& LogWriter::operator=(LogWriter&& other) noexcept {
   std::swap(since_mark_from_, other.since_mark_from_);
   std::swap(events_since_mark_, other.events_since_mark_);
   std::swap(num_marks_, other.num_marks_);
+  std::swap(torn_, other.torn_);
+  std::swap(synced_events_gone_, other.synced_events_gone_);
   return *this;
 }
 
@@ -111,6 +116,10 @@ void LogWriter::Seal(std::int64_t time_us, std::int8_t kind,
 }
 
 Status LogWriter::Sync() {
+  // Before, since the write may hide that the file was cut; and after, since
+  // only what is still there then is acknowledged.
+  const Status untouched = CheckFile(synced_bytes_);
+  if (!untouched) return untouched;
   std::size_t written = 0;
   while (written < pending_.size()) {
     const ssize_t count =
@@ -123,7 +132,7 @@ Status LogWriter::Sync() {
       const Error error = SystemError("cannot write", part_.path);
       // Takes the torn event away. If that fails too it is overwritten when
       // there is room, or found by its seal.
-      (void)!ftruncate(fd_, synced_bytes_);
+      torn_ = ftruncate(fd_, synced_bytes_) != 0;
       return error;
     }
     written += static_cast<std::size_t>(count);
@@ -131,10 +140,40 @@ Status LogWriter::Sync() {
   if (written > 0 && fdatasync(fd_) != 0) {
     return SystemError("cannot sync", part_.path);
   }
+  if (written > 0) torn_ = false;
+  const Status kept =
+      CheckFile(synced_bytes_ + static_cast<std::int64_t>(written));
+  if (!kept) return kept;
   synced_bytes_ += static_cast<std::int64_t>(written);
   synced_events_ = num_events_;
   pending_.clear();
   return Done{};
+}
+
+Status LogWriter::CheckFile(std::int64_t expected_bytes) {
+  struct stat open_file {};
+  struct stat named {};
+  if (fstat(fd_, &open_file) != 0) {
+    return SystemError("cannot look at", part_.path);
+  }
+  const bool is_there = stat(part_.path.c_str(), &named) == 0 &&
+                        named.st_dev == open_file.st_dev &&
+                        named.st_ino == open_file.st_ino;
+  const char* done = nullptr;
+  if (open_file.st_nlink == 0) {
+    done = " was deleted";
+  } else if (!is_there) {
+    done = " was moved or replaced";
+  } else if (open_file.st_size < expected_bytes) {
+    done = " was cut";
+  } else if (open_file.st_size > expected_bytes && !torn_) {
+    done = " was written to";
+  }
+  if (done == nullptr) return Done{};
+  synced_events_gone_ =
+      open_file.st_nlink == 0 || open_file.st_size < expected_bytes;
+  return Error{ErrorCode::kNotFound,
+               part_.path + done + " by another program while it was recorded"};
 }
 
 void LogWriter::Discard() {

@@ -26,6 +26,8 @@ struct LogPart {
 /// power takes it away. Until then it is in memory, also over any number of
 /// failed Syncs: each writes again from the end of what is acknowledged, so a
 /// full disk leaves no torn event behind and loses nothing that memory holds.
+/// Other programs can take it away: each Sync looks whether the file is still
+/// there under its name and has the size that was written.
 ///
 /// Threads: one at a time.
 class LogWriter {
@@ -48,7 +50,14 @@ class LogWriter {
 
   /// Puts all that was appended on the disk.
   /// Errors: kUnavailable with the system's reason; to be tried again.
+  ///         kNotFound when another program deleted, moved, cut or wrote to the
+  ///         file; no Sync will succeed any more, and pending() is to be
+  ///         written to another file.
   Status Sync();
+
+  /// The synced events are no longer on the disk (not all of them, where the
+  /// file was only cut).
+  bool synced_events_gone() const { return synced_events_gone_; }
 
   /// Closes the file and deletes it.
   void Discard();
@@ -57,6 +66,8 @@ class LogWriter {
   bool sealed() const { return events_since_mark_ == 0; }
   std::int64_t synced_bytes() const { return synced_bytes_; }
   std::int64_t pending_bytes() const { return std::ssize(pending_); }
+  /// The whole events, marks among them, that no Sync has put on the disk.
+  const std::vector<std::uint8_t>& pending() const { return pending_; }
   std::int64_t synced_events() const { return synced_events_; }
   std::int64_t num_events() const { return num_events_; }
   const LogPart& part() const { return part_; }
@@ -64,6 +75,7 @@ class LogWriter {
  private:
   LogWriter(int fd, LogPart part) : fd_(fd), part_(std::move(part)) {}
   std::int64_t end() const { return synced_bytes_ + pending_bytes(); }
+  Status CheckFile(std::int64_t expected_bytes);
 
   int fd_ = -1;
   LogPart part_;
@@ -75,6 +87,8 @@ class LogWriter {
   std::int64_t since_mark_from_ = 0;
   std::int64_t events_since_mark_ = 0;
   std::int64_t num_marks_ = 0;
+  bool torn_ = false;  // A failed write may have left bytes behind its end.
+  bool synced_events_gone_ = false;
 };
 
 }  // namespace terra::logger

@@ -4,14 +4,16 @@
 #include <utility>
 
 #include "bus/envelope.h"
+#include "bus/log.h"
 #include "bus/messages.h"
 
 namespace terra::logger {
 
 LoggerNode::LoggerNode(Recorder recorder, bus::ChannelNames channels,
                        bus::Outbox& out)
-    : recorder_(std::move(recorder)),
-      channels_(std::move(channels)),
+    : channels_(std::move(channels)),
+      disk_(std::move(recorder)),
+      progress_(disk_.progress()),
       map_(out) {}
 
 Status LoggerNode::Listen(const BusTap::Urls& urls) {
@@ -24,18 +26,15 @@ Status LoggerNode::Listen(const BusTap::Urls& urls) {
 bus::Time LoggerNode::Advance(bus::Time now) {
   if (flush_.Due(now)) {
     TakeQueue();
-    Note(recorder_.Flush(bus::UnixMicroseconds()));
+    NoteProgress(now);
   }
   return std::min(map_.Advance(now), flush_.next());
 }
 
 void LoggerNode::TakeQueue() {
-  const EventQueue::Batch batch = queue_.Take();
-  for (const HeardEvent& event : batch.events) {
-    recorder_.Record(event);
-    FeedMap(event);
-  }
-  if (batch.refused > 0) recorder_.CountLost(batch.refused);
+  EventQueue::Batch batch = queue_.Take();
+  for (const HeardEvent& event : batch.events) FeedMap(event);
+  disk_.Write(std::move(batch));
 }
 
 void LoggerNode::FeedMap(const HeardEvent& event) {
@@ -49,32 +48,55 @@ void LoggerNode::FeedMap(const HeardEvent& event) {
   }
 }
 
-void LoggerNode::Note(const Status& written) {
-  failing_ = !written;
-  if (failing_) last_error_ = written.error().message;
+// A failure that is mended at once (a file taken away, the next one begun) is
+// said for kShownFor, so that a heartbeat tells of it.
+void LoggerNode::NoteProgress(bus::Time now) {
+  constexpr bus::Duration kShownFor = std::chrono::seconds(3);
+  progress_ = disk_.progress();
+  std::string why = progress_.failing ? progress_.error : "";
+  if (disk_.WaitsForDisk(now) > kSlowDisk) {
+    why = "the disk of " + progress_.path + " takes nothing";
+  }
+  if (!why.empty()) {
+    failing_ = last_error_ = why;
+    failed_ = now;
+  } else if (!failing_.empty() && now - failed_ > kShownFor) {
+    failing_.clear();
+  }
+}
+
+bool LoggerNode::works() const {
+  return disk_.Works(bus::Clock::now());
 }
 
 void LoggerNode::Finish() {
   tap_.reset();
   TakeQueue();
-  Note(recorder_.Close(bus::UnixMicroseconds()));
+  finished_ = disk_.Finish(kFinishWait);
+  progress_ = disk_.progress();
+  if (!finished_) {
+    bus::LogError("the disk of " + progress_.path +
+                  " takes nothing; what waited for it is lost");
+  } else if (progress_.failing) {
+    bus::LogError(progress_.error);
+  }
 }
 
 int LoggerNode::exit_code() const {
-  return failing_ || recorder_.lost() > 0 ? 1 : 0;
+  return !finished_ || progress_.failing || progress_.lost > 0 ? 1 : 0;
 }
 
 std::string LoggerNode::state() const {
-  return failing_ ? "failing: " + last_error_
-                  : "ready, recording to " + recorder_.path();
+  return failing_.empty() ? "ready, recording to " + progress_.path
+                          : "failing: " + failing_;
 }
 
 void LoggerNode::AddCounters(bus::Counters& counters) const {
-  counters.emplace_back("acknowledged", recorder_.acknowledged_events());
-  counters.emplace_back("pending_bytes", recorder_.pending_bytes());
-  counters.emplace_back("lost", recorder_.lost());
-  counters.emplace_back("part", recorder_.part());
-  counters.emplace_back("deleted_parts", recorder_.deleted_parts());
+  counters.emplace_back("acknowledged", progress_.acknowledged);
+  counters.emplace_back("pending_bytes", progress_.pending_bytes);
+  counters.emplace_back("lost", progress_.lost);
+  counters.emplace_back("part", progress_.part);
+  counters.emplace_back("deleted_parts", progress_.deleted_parts);
   if (!tap_) return;
   const BusTap::Counters& heard = tap_->counters();
   counters.emplace_back("heard", heard.heard);

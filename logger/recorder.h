@@ -7,6 +7,7 @@
 #include "logger/event_queue.h"
 #include "logger/log_folder.h"
 #include "logger/log_writer.h"
+#include "logger/sequence_gaps.h"
 #include "logger/state_snapshot.h"
 #include "terrain/result.h"
 
@@ -29,12 +30,18 @@ struct RecorderOptions {
 /// mark and the state in force (StateSnapshot), and whose events are sealed by
 /// marks (log_seal.h).
 ///
-/// An event is acknowledged when the Flush after its Record succeeded; nothing
-/// takes it away then. So a kill at any moment, or a loss of power, costs what
-/// came since the last Flush, and leaves at most one torn event, which a reader
-/// finds. While the disk takes nothing (full, gone) up to max_pending_bytes
-/// wait in memory; what does not fit is counted, and KIND_LOST marks say so
-/// where it is missing.
+/// An event is acknowledged when the Flush after its Record succeeded. A kill
+/// at any moment, or a loss of power, costs only what came since the last
+/// Flush, and leaves at most one torn event, which a reader finds. While the
+/// disk takes nothing (full, gone) up to max_pending_bytes wait in memory.
+///
+/// Lost events are counted, and KIND_LOST marks say where they are missing:
+///  - events that memory did not hold while the disk took nothing;
+///  - acknowledged events that another program took away: it deleted or cut the
+///    file. The recording goes on in a new part;
+///  - events that came between the recording before, when that one was killed
+///    or its machine went down, and this one. They are counted by the gaps in
+///    their senders' seq (SequenceGaps).
 ///
 /// Threads: one.
 class Recorder {
@@ -47,10 +54,13 @@ class Recorder {
   void Record(const HeardEvent& event);
 
   /// Counts events that were lost before they came here.
-  void CountLost(std::int64_t events) { lost_since_mark_ += events; }
+  void CountLost(std::int64_t events) { to_mark_.events += events; }
 
   /// Puts all that was recorded on the disk, and begins the next part when it
-  /// is time. Errors: the disk took nothing; to be tried again.
+  /// is time.
+  /// Errors: kUnavailable when the disk took nothing; to be tried again.
+  ///         kNotFound, once, when another program took the file away; the next
+  ///         part was begun.
   Status Flush(std::int64_t now_us);
 
   /// Flushes and ends the recording in order. Errors: as Flush.
@@ -58,16 +68,25 @@ class Recorder {
 
   std::int64_t acknowledged_events() const;
   std::int64_t pending_bytes() const { return writer_.pending_bytes(); }
-  std::int64_t lost() const { return lost_ + lost_since_mark_; }
+  std::int64_t lost() const { return lost_ + to_mark_.events; }
   std::int64_t deleted_parts() const { return deleted_parts_; }
   int part() const { return writer_.part().number; }
   const std::string& path() const { return writer_.part().path; }
 
  private:
+  // Lost events that no mark has told of yet.
+  struct Loss {
+    static constexpr const char* kDisk = "the disk is full or too slow";
+    std::int64_t events = 0;
+    std::string reason = kDisk;
+  };
+
   Recorder(LogFolder folder, RecorderOptions options, std::int64_t begin_us,
            LogWriter writer);
   void BeginPart(std::int64_t now_us);
   Status Rotate(std::int64_t now_us);
+  Status ReplaceFile(std::int64_t now_us, const std::string& reason);
+  void AppendAgain(const std::vector<std::uint8_t>& events);
   void SealEvents(std::int64_t now_us);
 
   LogFolder folder_;
@@ -78,7 +97,8 @@ class Recorder {
   std::int64_t part_begin_ = 0;  // End of the snapshot in the file.
   std::int64_t events_of_parts_before_ = 0;
   std::int64_t lost_ = 0;
-  std::int64_t lost_since_mark_ = 0;
+  Loss to_mark_;
+  SequenceGaps gaps_;
   std::int64_t deleted_parts_ = 0;
 };
 

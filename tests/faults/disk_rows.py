@@ -94,6 +94,25 @@ def folder_read_only(rig):
     return "the logger refuses to start and names the folder; all requests served"
 
 
+@row("log folder deleted while it records", "-", ["logger:silent"])
+def folder_deleted(rig):
+    rig.set_up("searcher", "logger")
+    for _ in range(3):
+        rig.await_(lambda: rig.status["logger"]["state"].startswith("ready"), 6,
+                   "the logger does not go on")
+        shutil.rmtree(rig.log)
+        rig.injected += 1
+        reported(rig)
+        served_meanwhile(rig, 10)
+        acknowledged = rig.counter("logger", "acknowledged")
+        rig.status.pop("logger")
+        rig.await_(lambda: rig.counter("logger", "acknowledged") > acknowledged, 4,
+                   "the logger acknowledges nothing more")
+        require(events_in(rig, newest_log(rig)) > 0, "nothing is on the disk")
+    ends_with_failure(rig)
+    return "said in STATUS and by exit code 1; recording goes on in a new file"
+
+
 @row("logger stopped (SIGSTOP) for 2 s under load", "GATE 17 (slow logger)",
      ["logger:writes-at-the-end"])
 def logger_stopped(rig):

@@ -1,4 +1,5 @@
 """Processes that die, hang, or run twice."""
+import contextlib
 import os
 import signal
 import time
@@ -133,6 +134,40 @@ def signals(rig):
     rig.serve()
     rig.await_candidate()
     return "no wait is cut short, no process ends"
+
+
+def unread_pipe(folder):
+    """A full pipe: the descriptor that keeps it open, and its path."""
+    path = folder / "unread"
+    os.mkfifo(path)
+    pipe = os.open(path, os.O_RDWR | os.O_NONBLOCK)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(pipe, b".")
+    return pipe, path
+
+
+@row("nobody reads what the processes log (a full pipe)", "-", ["verifier:waits-for-stderr"])
+def stderr_unread(rig):
+    pipe, path = unread_pipe(rig.folder)
+    before = ("sh", "-c", f"exec \"$@\" 2>>'{path}'", "sh")
+    rig.define("map", "terra-map", "--map", rig.map, "--legend", rig.legend, before=before)
+    rig.define("planner", "terra-planner", "--stride", field.STRIDE, before=before)
+    rig.define("verifier", "terra-verifier", before=before)
+    rig.define("logger", "terra-logger", "--out", rig.log, before=before)
+    rig.define("searcher", "terra-advisor", "--name", "searcher", before=before)
+    rig.set_up("searcher", "logger")
+    for _ in range(50):
+        rig.serve()
+        # A word of the gate's for its log.
+        rig.advice_bus.say_raw("TERRA_ADVICE", b"no advice")
+        rig.injected += 1
+    rig.await_candidate()
+    for name in (*SET, "searcher", "logger"):
+        code = rig[name].terminate()
+        require(code == 0, f"{name} ended with {code}")
+    os.close(pipe)
+    return "all requests served; each process ends when it is asked to"
 
 
 @row("advisor restarted 5 times a second", "LCM flapping", ["verifier:waits-for-advice"])

@@ -32,8 +32,9 @@ ChildProcess& Robot::Start(const std::string& name,
   const bool has_program = name == "map" || name == "planner" ||
                            name == "graph-planner" || name == "verifier" ||
                            name == "logger";
-  std::vector<std::string> command = {
-      ProgramPath(has_program ? "terra-" + name : "terra-advisor")};
+  std::vector<std::string> command = before_;
+  command.push_back(
+      ProgramPath(has_program ? "terra-" + name : "terra-advisor"));
   for (const std::string& option : BusOptions()) command.push_back(option);
   if (name == "map") {
     command.insert(command.end(), {"--map", map_path()});

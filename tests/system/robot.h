@@ -25,6 +25,10 @@ class Robot {
   /// an advisor of that name.
   ChildProcess& Start(const std::string& name,
                       const std::vector<std::string>& options = {});
+  /// What stands in front of the command of each process started from now on.
+  void StartBehind(std::vector<std::string> before) {
+    before_ = std::move(before);
+  }
   void Kill(const std::string& name) { processes_.erase(name); }
   ChildProcess& process(const std::string& name) {
     return *processes_.at(name);
@@ -57,6 +61,7 @@ class Robot {
   TempFolder folder_;
   BusPeer deployed_;
   BusPeer advice_;
+  std::vector<std::string> before_;
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
 };
 

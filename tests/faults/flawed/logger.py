@@ -50,6 +50,10 @@ def main():
             kept.append(event(next(numbers), heard))
         if flaw != "writes-at-the-end" or len(kept) > 100_000:
             try:
+                if file and os.fstat(file.fileno()).st_nlink == 0:
+                    folder.mkdir(parents=True, exist_ok=True)
+                    file, at = open(folder / f"{time.time_ns()}.lcmlog", "wb", buffering=0), 0
+                    raise OSError("the log was deleted")
                 if kept and file:
                     at += os.pwrite(file.fileno(), b"".join(kept), at)
                     written += len(kept)

@@ -31,7 +31,8 @@ MOST_BYTES = 60_000
 FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decoder no-framing
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
-needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit""".split()
+needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit
+waits-for-stderr""".split()
 
 
 def chain_of(cells):
@@ -106,6 +107,8 @@ class Gate:
     def _plan_request(self, message):
         if self.lacks("slow"):
             time.sleep(1.5)
+        if self.lacks("waits-for-stderr"):
+            print(f"request {message['request_id']}", file=sys.stderr, flush=True)
         if message["action"] == 1:
             self._follow(message)
 

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 #include <utility>
 #include <vector>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include "terrain/builtin_legends.h"
@@ -154,14 +156,45 @@ Settings GetSettings(const YAML::Node& yaml) {
   return settings;
 }
 
+// Takes nothing of a document.
+class PassOver : public YAML::EventHandler {
+  using Mark = YAML::Mark;
+  using Anchor = YAML::anchor_t;
+  using Style = YAML::EmitterStyle::value;
+
+  void OnDocumentStart(const Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const Mark&, Anchor) override {}
+  void OnAlias(const Mark&, Anchor) override {}
+  void OnScalar(const Mark&, const std::string&, Anchor,
+                const std::string&) override {}
+  void OnSequenceStart(const Mark&, const std::string&, Anchor,
+                       Style) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const Mark&, const std::string&, Anchor, Style) override {}
+  void OnMapEnd() override {}
+};
+
+// YAML::LoadAll would count them, but never ends on some texts (a lone comma is
+// documents without end to it).
+bool IsOneDocument(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  PassOver pass_over;
+  return parser.HandleNextDocument(pass_over) &&
+         !parser.HandleNextDocument(pass_over);
+}
+
 Result<Settings> ParseSettings(std::string_view text, const std::string& name) {
   try {
-    const std::vector<YAML::Node> parts = YAML::LoadAll(std::string(text));
-    if (parts.size() != 1 || !parts[0].IsMap()) {
+    const std::string content(text);
+    const YAML::Node yaml =
+        IsOneDocument(content) ? YAML::Load(content) : YAML::Node();
+    if (!yaml.IsMap()) {
       return Error{ErrorCode::kInvalid,
                    name + ": not a map_server yaml (one list of 'key: value')"};
     }
-    return GetSettings(parts[0]);
+    return GetSettings(yaml);
   } catch (const YAML::Exception& error) {
     const int line = error.mark.line + 1;  // unknown: 0
     const std::string where = line > 0 ? ":" + std::to_string(line) : "";

@@ -408,6 +408,12 @@ TEST_P(WrongRosMap, IsRefusedWithAReason) {
   EXPECT_THAT(ErrorMessage(ReadMap(path)), HasSubstr(GetParam().complaint));
 }
 
+TEST(RosMap, ATextOfDocumentsWithoutEndIsRefused) {
+  const TempFolder folder;
+  EXPECT_THAT(ErrorMessage(ReadMap(WriteRosMap(folder, ",\n", {255}))),
+              HasSubstr("not a map_server yaml"));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Yamls, WrongRosMap,
     ::testing::Values(

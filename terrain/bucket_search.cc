@@ -167,20 +167,22 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   taken_.clear();
   for (Key floor = queue_.floor(); !queue_.empty();) {
     const Entry entry = queue_.Pop();
-    if (queue_.floor() > task.bound) {
-      break;
-    }
     if (queue_.floor() != floor) {
       floor = queue_.floor();
+      if (floor > task.bound) {
+        break;
+      }
       taken_.clear();
     }
-    taken_.push_back(entry);
     const Cell cell{entry.x(), entry.y()};
     const std::size_t index = map.cost_grid().Index(cell);
-    const bool improved_since = labels_.At(index) != entry.key;
+    if (labels_.At(index) != entry.key) {
+      continue;  // Improved since.
+    }
+    taken_.push_back(entry);
     const bool useless =
         attempt.found && entry.key + task.to_goal(cell.x, cell.y) >= task.bound;
-    if (!improved_since && !useless) {
+    if (!useless) {
       Expand(task, entry, index);
     }
   }

@@ -136,7 +136,7 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
     const Status asked = WriteQuestion(folder, request);
     if (!asked.ok()) {
       reply.reason = NoAnswer::kTransport;
-      reply.error = "the question cannot be asked: " + asked.error().message;
+      reply.error = "the question cannot be written: " + asked.error().message;
       return reply;
     }
   }

@@ -21,6 +21,7 @@
 #include "terrain/files/dataset.h"
 #include "terrain/files/legend_file.h"
 #include "terrain/files/map_file.h"
+#include "terrain/files/whole_file.h"
 
 namespace terra::benchmark {
 namespace {
@@ -200,7 +201,7 @@ bool IsPng(const fs::path& path) {
 // Empty for a frame.
 std::string WhyNoFrame(const fs::path& path) {
   std::error_code failed;
-  if (IsHidden(path)) return "hidden, so no image of RUGD";
+  if (IsHidden(path)) return "hidden and so no image of RUGD";
   if (!IsPng(path) || !IsFrameName(path.stem().string())) {
     return "not called SCENE_NNNNN.png";
   }

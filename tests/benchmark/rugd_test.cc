@@ -125,7 +125,7 @@ TEST_F(RugdTest, EndsLieInOneComponentFarEnoughApartAndAreJoined) {
 TEST_F(RugdTest, PairsDependOnSeedAndNameAlone) {
   Write("village_00003.png", Mask(false));
   const TerrainMap map =
-      ReadMap(folder_.Path("masks/village_00003.png"), {"rugd", {}})
+      ReadMap(folder_.Path("masks/village_00003.png"), {"rugd", {}, {}})
           .value()
           .map;
   const RugdDraw a = DrawRugdEnds(map, 5, "village_00003");

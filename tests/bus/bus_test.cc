@@ -225,7 +225,7 @@ TEST(HeartbeatTest, TellsAChangedStateAtOnceAndElseOnceASecond) {
   StateNode node;
   const auto sent_at = [&](milliseconds at) -> std::int64_t {
     heartbeat.Advance(node, Time(at));
-    return bus->counters().sent;
+    return bus->counters().sent.load();
   };
   EXPECT_EQ(sent_at(milliseconds(0)), 1) << "the first state";
   EXPECT_EQ(sent_at(milliseconds(400)), 1) << "nothing new";

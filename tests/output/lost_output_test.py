@@ -17,6 +17,8 @@ import tempfile
 
 TIMEOUT_S = 60
 URL = "udpm://239.255.76.67:17690?ttl=0"
+# What some programs want before they print anything.
+NEEDED = {"terra-chaos": ["--all"], "terra-graph-planner": ["--graph", "graph"]}
 ROUTE = "[(30, 250), (470, 250)]"
 
 
@@ -76,7 +78,7 @@ def that_print(bin_folder, examples, folder):
             yield [program, "--latency", "0"]
         elif program.name not in ("terra-calibrate", "terra-speed"):
             yield [program, "--version"]
-            yield [program, "--print-config"]
+            yield [program, *NEEDED.get(program.name, []), "--print-config"]
 
 
 def that_write(bin_folder, examples, folder):

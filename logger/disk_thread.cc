@@ -10,25 +10,26 @@ namespace {
 // Work that is not begun for so long is not for want of processor time.
 constexpr bus::Duration kHangs = std::chrono::seconds(3);
 
-DiskThread::Progress ProgressOf(const Recorder& recorder,
-                                const Status& written) {
-  DiskThread::Progress progress;
+void Update(DiskThread::Progress& progress, const Recorder& recorder,
+            const Status& written) {
   progress.failing = !written;
-  if (!written) progress.error = written.error().message;
+  if (!written) {
+    ++progress.failures;
+    progress.error = written.error().message;
+  }
   progress.path = recorder.path();
   progress.part = recorder.part();
   progress.acknowledged = recorder.acknowledged_events();
   progress.pending_bytes = recorder.pending_bytes();
   progress.lost = recorder.lost();
   progress.deleted_parts = recorder.deleted_parts();
-  return progress;
 }
 
 }  // namespace
 
 DiskThread::DiskThread(Recorder recorder)
     : shared_(std::make_shared<Shared>(std::move(recorder))) {
-  shared_->progress = ProgressOf(shared_->recorder, Done{});
+  Update(shared_->progress, shared_->recorder, Done{});
   thread_ = std::thread([shared = shared_] {
     Run(shared);
   });
@@ -112,7 +113,7 @@ void DiskThread::Turn(Shared& shared, bool last) {
   const std::int64_t now_us = bus::UnixMicroseconds();
   const Status written = last ? recorder.Close(now_us) : recorder.Flush(now_us);
   const std::lock_guard lock(shared.mutex);
-  shared.progress = ProgressOf(recorder, written);
+  Update(shared.progress, recorder, written);
   shared.flush_begun = {};
   shared.ended = last;
   if (last) shared.changed.notify_all();

@@ -22,9 +22,10 @@ class DiskThread {
  public:
   /// How the recording is, after the last flush that has ended.
   struct Progress {
-    bool failing = false;
-    std::string error;  ///< Of the last flush that failed.
-    std::string path;   ///< Of the part that is being written.
+    bool failing = false;       ///< The last flush failed.
+    std::int64_t failures = 0;  ///< Flushes that failed since the start.
+    std::string error;          ///< Of the last one that failed.
+    std::string path;           ///< Of the part that is being written.
     int part = 0;
     std::int64_t acknowledged = 0;
     std::int64_t pending_bytes = 0;

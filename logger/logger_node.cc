@@ -52,8 +52,12 @@ void LoggerNode::FeedMap(const HeardEvent& event) {
 // said for kShownFor, so that a heartbeat tells of it.
 void LoggerNode::NoteProgress(bus::Time now) {
   constexpr bus::Duration kShownFor = std::chrono::seconds(3);
+  const std::int64_t failures_before = progress_.failures;
   progress_ = disk_.progress();
-  std::string why = progress_.failing ? progress_.error : "";
+  std::string why;
+  if (progress_.failing || progress_.failures > failures_before) {
+    why = progress_.error;
+  }
   if (disk_.WaitsForDisk(now) > kSlowDisk) {
     why = "the disk of " + progress_.path + " takes nothing";
   }

@@ -36,6 +36,16 @@ std::map<std::int64_t, std::int64_t> BaselineTimes(
   return times;
 }
 
+// How long after `from_us` a time is, at least 0. Times of a log may be any
+// numbers.
+std::int64_t Between(std::int64_t from_us, std::int64_t to_us) {
+  if (to_us <= from_us) return 0;
+  std::int64_t passed = 0;
+  return __builtin_sub_overflow(to_us, from_us, &passed)
+             ? std::numeric_limits<std::int64_t>::max()
+             : passed;
+}
+
 // Collects what each sender says of himself.
 class Claimants {
  public:
@@ -45,7 +55,7 @@ class Claimants {
     Claims* claims = FindOrAdd(who);
     if (claims == nullptr) return;
     ++claims->all;
-    if (said_us < 0 || said_us > passed_us + kSlackUs) {
+    if (said_us < 0 || said_us - kSlackUs > passed_us) {
       ++claims->impossible;
     } else {
       claims->possible.seconds.push_back(1e-6 * static_cast<double>(said_us));
@@ -103,10 +113,9 @@ void AddAdvisors(const LogContents& contents, RunLatencies& latencies) {
     const auto asked = baseline_times.find(advice->message.baseline_digest);
     const bool known =
         asked != baseline_times.end() && advice->index >= contents.state_end;
-    advisors.Add(
-        "T_llm of " + advice->message.advisor, advice->message.t_llm_us,
-        known ? std::max<std::int64_t>(0, advice->time_us - asked->second)
-              : kLongestUs);
+    advisors.Add("T_llm of " + advice->message.advisor,
+                 advice->message.t_llm_us,
+                 known ? Between(asked->second, advice->time_us) : kLongestUs);
   }
   advisors.MoveTo(latencies);
 }
@@ -123,7 +132,7 @@ void AddGates(const LogContents& contents, RunLatencies& latencies) {
     gates.Add(who, verdict->t_det_us,
               logged->index < contents.state_end
                   ? kLongestUs
-                  : logged->time_us - contents.first_us);
+                  : Between(contents.first_us, logged->time_us));
   }
   gates.MoveTo(latencies);
 }

@@ -57,7 +57,8 @@ endfunction()
 # terra_test(FOLDER SRCS a_test.cc ... [DEPS library ...] [LABELS label ...]
 #            [NAME executable] [TIMEOUT seconds])
 # One GoogleTest program per tested folder; ctest names are folder.Suite.Test.
-# LABELS: long = not in the sanitizer part of CI; threads = run under TSan too.
+# LABELS: long = not in the sanitizer part of CI; threads = run under TSan too,
+# by the target thread_tests.
 function(terra_test folder)
   cmake_parse_arguments(ARG "" "NAME;TIMEOUT" "SRCS;DEPS;LABELS" ${ARGN})
   if(NOT ARG_NAME)
@@ -80,6 +81,9 @@ function(terra_test folder)
     # of a system header (gcc bug 105651).
     target_compile_options(${ARG_NAME} PRIVATE
       -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  endif()
+  if("threads" IN_LIST ARG_LABELS)
+    add_dependencies(thread_tests ${ARG_NAME})
   endif()
   gtest_discover_tests(${ARG_NAME} TEST_PREFIX "${prefix}"
     DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES

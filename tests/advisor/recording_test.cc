@@ -11,12 +11,14 @@
 #include "advisor/exchange_client.h"
 #include "advisor/limited_client.h"
 #include "advisor/recording_clients.h"
+#include "tests/support/captured_errors.h"
 #include "tests/support/temp_folder.h"
 
 namespace terra::advisor {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::CapturedErrors;
 using ::testing::HasSubstr;
 using testing::ReadBytes;
 using testing::TempFolder;
@@ -241,14 +243,13 @@ TEST_F(ExchangeTest, ABlankAnswerIsWaitedForAndThatIsSaidOnce) {
     const fs::path answer = FolderOf(request) / "answer.txt";
     fs::create_directories(FolderOf(request));
     std::ofstream(answer) << blank;
-    ::testing::internal::CaptureStderr();
+    CapturedErrors errors;
     options_.deadline_s = 0.1;
     const LlmReply none = ExchangeClient(options_).Ask(request, {});
-    const std::string said = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(none.reason, NoAnswer::kDeadline);
     EXPECT_THAT(none.error, HasSubstr("it is empty"));
-    EXPECT_THAT(said, HasSubstr(answer.string() + ": is empty"));
-    EXPECT_EQ(said.find("is empty"), said.rfind("is empty")) << said;
+    EXPECT_TRUE(errors.Await(answer.string() + ": is empty")) << errors.Text();
+    EXPECT_EQ(errors.Times("is empty"), 1) << errors.Text();
     std::ofstream(answer) << "Yes";
     EXPECT_EQ(client_.Ask(request, {}).text, "Yes");
   }

@@ -23,6 +23,7 @@
 #include "bus/log.h"
 #include "bus/time.h"
 #include "tests/bus/sample_messages.h"
+#include "tests/support/captured_errors.h"
 #include "tests/support/tcpq_hub.h"
 #include "tests/support/temp_folder.h"
 
@@ -31,6 +32,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using terra::testing::CapturedErrors;
 using terra::testing::TcpqHub;
 
 constexpr seconds kPatience{20};
@@ -83,13 +85,6 @@ class TcpqTest : public ::testing::Test {
   std::unique_ptr<Bus> says_;
 };
 
-// What is written to standard error meanwhile, liblcm's lines included.
-class CapturedErrors {
- public:
-  CapturedErrors() { ::testing::internal::CaptureStderr(); }
-  std::string Text() { return ::testing::internal::GetCapturedStderr(); }
-};
-
 double ProcessorSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -98,15 +93,6 @@ double ProcessorSeconds() {
            1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-}
-
-int TimesIn(const std::string& text, const std::string& what) {
-  int times = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos;
-       at = text.find(what, at + 1)) {
-    ++times;
-  }
-  return times;
 }
 
 TEST_F(TcpqTest, ComesBackWhenTheHubDoes) {
@@ -154,10 +140,10 @@ TEST_F(TcpqTest, AHubThatIsAwayIsSaidOnceAndCostsNothing) {
   EXPECT_LT(ProcessorSeconds() - before, 0.3);
   hub.emplace(port);
   ASSERT_TRUE(Connected());
-  const std::string text = errors.Text();
-  EXPECT_EQ(TimesIn(text, "went away"), 2) << "once a bus: " << text;
-  EXPECT_EQ(TimesIn(text, "is back"), 2) << text;
-  EXPECT_LT(text.size(), 3'000U) << text;
+  EXPECT_TRUE(errors.Await("is back", 2)) << "once a bus: " << errors.Text();
+  EXPECT_EQ(errors.Times("went away"), 2) << errors.Text();
+  EXPECT_EQ(errors.Times("is back"), 2) << errors.Text();
+  EXPECT_LT(errors.Text().size(), 3'000U) << errors.Text();
 }
 
 // ---- Hubs that do not do their part. ----
@@ -249,7 +235,8 @@ TEST_F(TcpqTest, ALogThatWasPlayedToItsEndCostsNothing) {
   const double before = ProcessorSeconds();
   poll(nullptr, 0, 500);
   EXPECT_LT(ProcessorSeconds() - before, 0.1);
-  EXPECT_EQ(TimesIn(errors.Text(), "was played to its end"), 1);
+  EXPECT_TRUE(errors.Await("was played to its end"));
+  EXPECT_EQ(errors.Times("was played to its end"), 1);
 }
 
 TEST(LcmLinkTest, ATcpqUrlThatIsNoneIsRefused) {

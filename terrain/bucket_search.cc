@@ -88,6 +88,14 @@ void BucketSearch<Keys>::Push(std::size_t index, Key total,
   queue_.Push(total, entry);
 }
 
+// A cell that is not searched on from, since its total is not below the bound.
+template <typename Keys>
+void BucketSearch<Keys>::LeaveOut(const Task& task, Cell cell, Key total) {
+  if (total == task.bound) {
+    as_good_.push_back(cell);
+  }
+}
+
 // Labels the neighbours of a cell to which it leads at a lower key.
 template <typename Keys>
 void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
@@ -111,9 +119,7 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
     const Key total = key + task.to_goal(cell.x, cell.y);
     if (total >= task.bound) {
       task.attempt.beyond_keys = task.bounded_by_keys;
-      if (total == task.bound) {
-        as_good_.emplace_back(key, cell.x, cell.y, d);
-      }
+      LeaveOut(task, cell, total);
       continue;
     }
     Push(next, total, Entry(key, cell.x, cell.y, d));
@@ -128,21 +134,14 @@ void BucketSearch<Keys>::Expand(Task& task, const Entry& entry,
   }
 }
 
-// Cells whose total is the goal's key are where the search may have stopped:
-// they were dropped, or taken out of the last bucket.
+// Every cheapest path is labelled, but for what lies behind the cells that were
+// left out with the goal's own key as their total.
 template <typename Keys>
 CellPath BucketSearch<Keys>::ReadPath(const TerrainMap& map, const Task& task,
                                       Cell start, Key mark) {
   LabelsOfPaths<Key> labels(labels_, mark);
-  PathExtraction path(map, task.keys, start, task.goal, labels);
-  for (const std::vector<Entry>* entries : {&taken_, &as_good_}) {
-    for (const Entry& entry : *entries) {
-      if (entry.key + task.to_goal(entry.x(), entry.y()) == task.bound) {
-        path.AddSource({{entry.x(), entry.y()}, entry.key});
-      }
-    }
-  }
-  return path.Run();
+  return PathExtraction(map, task.keys, start, task.goal, labels, as_good_)
+      .Run();
 }
 
 template <typename Keys>
@@ -164,26 +163,19 @@ SearchAttempt BucketSearch<Keys>::Run(const TerrainMap& map, const Keys& keys,
   Push(map.cost_grid().Index(start), least,
        Entry(origin, start.x, start.y, kNoArrival));
   as_good_.clear();
-  taken_.clear();
-  for (Key floor = queue_.floor(); !queue_.empty();) {
+  while (!queue_.empty() && queue_.floor() <= task.bound) {
     const Entry entry = queue_.Pop();
-    if (queue_.floor() != floor) {
-      floor = queue_.floor();
-      if (floor > task.bound) {
-        break;
-      }
-      taken_.clear();
-    }
     const Cell cell{entry.x(), entry.y()};
     const std::size_t index = map.cost_grid().Index(cell);
     if (labels_.At(index) != entry.key) {
       continue;  // Improved since.
     }
-    taken_.push_back(entry);
-    const bool useless =
-        attempt.found && entry.key + task.to_goal(cell.x, cell.y) >= task.bound;
-    if (!useless) {
+    const Key total =
+        attempt.found ? entry.key + task.to_goal(cell.x, cell.y) : least;
+    if (total < task.bound) {
       Expand(task, entry, index);
+    } else {
+      LeaveOut(task, cell, total);
     }
   }
   if (attempt.found) {

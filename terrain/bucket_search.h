@@ -53,14 +53,14 @@ class BucketSearch {
   struct Task;
 
   void Push(std::size_t index, Key total, const Entry& entry);
+  void LeaveOut(const Task& task, Cell cell, Key total);
   void Expand(Task& task, const Entry& entry, std::size_t index);
   CellPath ReadPath(const TerrainMap& map, const Task& task, Cell start,
                     Key mark);
 
   SearchLabels<Key> labels_;
   BucketQueue<Key, Entry> queue_;
-  std::vector<Entry> taken_;    // Out of the bucket that is being emptied.
-  std::vector<Entry> as_good_;  // Dropped: their total is the goal's key.
+  std::vector<Cell> as_good_;  // Left out with the bound as their total.
 };
 
 extern template class BucketSearch<WideKeys>;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "terrain/cell.h"
 #include "terrain/map.h"
+#include "terrain/octile_paths.h"
 #include "terrain/require.h"
 #include "terrain/search_keys.h"
 #include "terrain/search_steps.h"
@@ -38,13 +38,10 @@ template <typename Keys, typename Labels>
 class PathExtraction {
  public:
   using Key = typename Keys::Key;
-  struct Source {
-    Cell cell;
-    Key key;
-  };
 
+  /// Without sources no cell may lack its key.
   PathExtraction(const TerrainMap& map, const Keys& keys, Cell start, Cell goal,
-                 Labels& labels)
+                 Labels& labels, const std::vector<Cell>& sources = {})
       : map_(map),
         keys_(keys),
         grid_(map),
@@ -52,17 +49,9 @@ class PathExtraction {
         start_(start),
         goal_(goal),
         labels_(labels),
-        total_(labels.At(map.cost_grid().Index(goal))) {}
-
-  /// Without sources no cell may lack its key.
-  void AddSource(const Source& source) {
-    const auto covers = [&](const Source& known) {
-      return Covers(known, source.cell, source.key);
-    };
-    if (std::none_of(sources_.begin(), sources_.end(), covers)) {
-      sources_.push_back(source);
-    }
-  }
+        total_(labels.At(map.cost_grid().Index(goal))),
+        has_sources_(!sources.empty()),
+        behind_sources_(sources, goal) {}
 
   CellPath Run() {
     Stand at{goal_, map_.cost_grid().Index(goal_), total_, 0, 0};
@@ -102,8 +91,7 @@ class PathExtraction {
     const Key straight = keys_.Straight(code);
     const Key diagonal = keys_.Diagonal(code);
     const Key to_goal = to_goal_(at.cell.x, at.cell.y);
-    const bool may_lack_labels =
-        !sources_.empty() && at.key + to_goal == total_;
+    const bool may_lack_labels = has_sources_ && at.key + to_goal == total_;
     for (; at.turns < kSteps.size(); ++at.turns) {
       const std::size_t d = (at.ahead + at.turns) % kSteps.size();
       const std::size_t index = grid_.Neighbour(at.index, d);
@@ -112,7 +100,7 @@ class PathExtraction {
       const bool leads_here = label < at.key && label + step == at.key;
       if (!leads_here && !may_lack_labels) continue;
       const Cell cell{at.cell.x + kSteps[d].x, at.cell.y + kSteps[d].y};
-      if ((leads_here || MayLeadHere(cell, index, step, at, to_goal)) &&
+      if ((leads_here || MayLeadHere(cell, index, step + to_goal)) &&
           grid_.MayPassCorner(at.index, d)) {
         return Stand{cell, index, at.key - step, static_cast<std::uint8_t>(d),
                      0};
@@ -122,23 +110,10 @@ class PathExtraction {
   }
 
   // Whether a neighbour without a final key may be on a cheapest path, as far
-  // as its place tells: the octile bound must be what the way on costs, and
-  // what the way from a source costs.
-  bool MayLeadHere(Cell cell, std::size_t index, Key step, const Stand& at,
-                   Key to_goal) const {
+  // as its place tells: its octile bound must be what the way on costs.
+  bool MayLeadHere(Cell cell, std::size_t index, Key to_goal) const {
     return grid_.Code(index) != 0 && !labels_.IsMarked(index) &&
-           to_goal_(cell.x, cell.y) == to_goal + step &&
-           std::any_of(sources_.begin(), sources_.end(),
-                       [&](const Source& source) {
-                         return Covers(source, cell, at.key - step);
-                       });
-  }
-
-  // Whether an octile path from the source gives a cell this key.
-  bool Covers(const Source& source, Cell cell, Key key) const {
-    return source.key +
-               OctileBound<Keys>(keys_, cell)(source.cell.x, source.cell.y) ==
-           key;
+           to_goal_(cell.x, cell.y) == to_goal && behind_sources_.Contain(cell);
   }
 
   const TerrainMap& map_;
@@ -149,7 +124,8 @@ class PathExtraction {
   const Cell goal_;
   Labels& labels_;
   const Key total_;
-  std::vector<Source> sources_;
+  const bool has_sources_;
+  const OctilePaths behind_sources_;
   std::vector<Stand> path_;
 };
 

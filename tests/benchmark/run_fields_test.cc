@@ -241,7 +241,7 @@ TEST_F(RunFieldsTest, RunsShareATitleOnlyWhenNothingThatMattersDiffers) {
   RunDescription paper = Described("openai");
   RandomRuns random(Written(paper));
   int shared = 0;
-  for (int i = 0; i < 3'000; ++i) {
+  for (int i = 0; i < 600; ++i) {
     json a = random.Next();
     json b = random.Next();
     // Answers of one model on one day.
@@ -261,7 +261,7 @@ TEST_F(RunFieldsTest, RunsShareATitleOnlyWhenNothingThatMattersDiffers) {
     shared += alike ? 1 : 0;
     if (HasFailure()) return;
   }
-  EXPECT_GT(shared, 50);
+  EXPECT_GT(shared, 10);
 }
 
 TEST_F(RunFieldsTest, EachDeclaredSettingPutsARunWhereItBelongs) {

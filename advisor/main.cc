@@ -10,6 +10,7 @@
 #include "bus/bus.h"
 #include "bus/log.h"
 #include "bus/process.h"
+#include "bus/secrets.h"
 
 int main(int argc, char** argv) {
   terra::advisor::AdvisorOptions options;
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
+    terra::bus::LeaveNoCore();
     auto backend = terra::advisor::MakeBackend(options);
     if (!backend) return backend.error();
     if (const std::string notice = (*backend)->notice(); !notice.empty()) {

@@ -10,6 +10,8 @@
 #include "bus/heartbeat.h"
 #include "bus/lcm_url.h"
 #include "bus/log.h"
+#include "bus/secrets.h"
+#include "bus/toml_config.h"
 #include "bus/usage_message.h"
 #include "bus/wire.h"
 #include "output/standard_output.h"
@@ -46,6 +48,7 @@ int Serve(const ProcessSpec& spec, const std::string& name,
   EventLoop loop(inbox, stop);
   ProcessContext context{options, *channels, name, out, inbox, loop};
   Result<std::unique_ptr<Node>> made = spec.make_node(context);
+  ForgetApiKeys();
   if (!made) return Fail(made.error().message);
   const std::unique_ptr<Node> node = *std::move(made);
   if (!node->channels().empty()) {
@@ -84,6 +87,7 @@ int ParseAndServe(const ProcessSpec& spec, int argc, char** argv) {
                    : "";
       });
   app.set_config("--config", "", "TOML file with any of these options");
+  ReadConfigAsToml(app);
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_flag("--print-config", print_config,
                "prints the effective options as TOML and exits")

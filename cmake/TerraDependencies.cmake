@@ -17,4 +17,7 @@ endif()
 terra_find_library(terra::opencv HEADER opencv2/core.hpp SUFFIX opencv4
                    LIBRARIES opencv_imgproc opencv_core)
 terra_find_library(terra::zstd HEADER zstd.h LIBRARIES zstd)
+# Headers alone, for bus/toml_config.cc.
+find_path(TERRA_TOMLPLUSPLUS toml++/toml.h REQUIRED)
+mark_as_advanced(TERRA_TOMLPLUSPLUS)
 terra_find_library(terra::xxhash HEADER xxhash.h LIBRARIES xxhash)

@@ -317,6 +317,52 @@ TEST(TerraUsage, ProgramsOnTheBusRefuseUnknownOptionsAndConfigKeys) {
   EXPECT_THAT(run.output, HasSubstr("bad.toml: there is no option strude"));
 }
 
+TEST(TerraUsage, AConfigurationThatIsNoTomlIsRefusedWithItsLine) {
+  const testing::TempFolder folder;
+  std::string parts = "a";
+  for (int i = 0; i < 50'000; ++i) parts += ".a";
+  struct Case {
+    std::string text;
+    std::string says;
+  };
+  for (const Case& tested :
+       {Case{"stride = 50\nname = \"planner\n", "line 2: this is no TOML"},
+        Case{"name = planner\n", "line 1: this is no TOML"},
+        Case{"stride = 050\n", "line 1: this is no TOML"},
+        Case{"stride = 50\nstride = 60\n", "line 2: this is no TOML"},
+        Case{"\n[planner]\nstride = 50\n",
+             "line 2: options stand in no section"},
+        Case{"stride = 2026-12-01\n", "line 1: expected a string, a number"},
+        Case{"[" + parts + "]\nstride = 50\n", "larger than 64 kB"},
+        Case{"[" + parts.substr(0, 60'000) + "]\n", "line 1: no option has"},
+        Case{parts.substr(0, 200) + " = 1\n", "line 1: no option has"}}) {
+    const std::string config = folder.Write("bad.toml", tested.text);
+    const RunResult run = testing::RunToEnd(
+        {testing::ProgramPath("terra-planner"), "--config", config});
+    const std::string begin = tested.text.substr(0, 40);
+    EXPECT_EQ(run.exit_code, 2) << begin;
+    EXPECT_THAT(run.output, HasSubstr("bad.toml: ")) << begin;
+    EXPECT_THAT(run.output, HasSubstr(tested.says)) << begin;
+  }
+}
+
+TEST(TerraUsage, AConfigurationHoldsWhatTomlHolds) {
+  const testing::TempFolder folder;
+  const std::string config = folder.Write("good.toml", R"(# A comment.
+name = 'the "planner"'   # another
+stride = 0x32
+robot = "A\u0042C"
+)");
+  const RunResult run =
+      testing::RunToEnd({testing::ProgramPath("terra-planner"), "--config",
+                         config, "--print-config"});
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  for (const char* line :
+       {"name='the \"planner\"'\n", "stride=50\n", "robot=\"ABC\"\n"}) {
+    EXPECT_THAT(run.output, HasSubstr(line));
+  }
+}
+
 TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
   const testing::TempFolder folder;
   struct Case {
@@ -333,7 +379,10 @@ TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
               "rea=true\n", "images=true\n"}},
         Case{"terra-advisor",
              {"--method", "direct", "--no-rea", "--price", "m=1:2"},
-             {"method=\"direct\"\n", "rea=false\n", "m=1:2"}}}) {
+             {"method=\"direct\"\n", "rea=false\n", "m=1:2"}},
+        Case{"terra-advisor",
+             {"--record", "a\\b 'c' #d.jsonl"},
+             {"record=\"a\\\\b 'c' #d.jsonl\"\n"}}}) {
     std::vector<std::string> command = {testing::ProgramPath(tested.program),
                                         "--print-config"};
     command.insert(command.end(), tested.options.begin(), tested.options.end());

@@ -6,6 +6,7 @@ usage: units_test.py SOURCE_FOLDER BUILD_FOLDER
 
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -78,21 +79,35 @@ class Units(unittest.TestCase):
                 self.assertIn(key, settings, unit.name)
             self.assertEqual(settings["LimitCORE"], "0")  # a core may hold a key
 
-    def test_keys_are_for_root_only_and_stand_in_no_unit(self):
+    def test_keys_are_for_root_only_and_no_unit_has_one_of_itself(self):
         keys = self.stage / "etc/terra-advisor/keys"
         self.assertEqual(stat.S_IMODE(keys.stat().st_mode), 0o700)
-        names = sorted(key.name for key in keys.iterdir())
-        self.assertIn("OPENAI_API_KEY", names)
-        for name in names:
-            self.assertEqual(stat.S_IMODE((keys / name).stat().st_mode), 0o600)
         for unit in self.services():
             text = unit.read_text()
             self.assertNotIn("Environment", text)
-            loaded = [name for name in names if f"LoadCredential={name}:" in text]
-            self.assertEqual(loaded, names if "advisor@" in unit.name else [])
+            self.assertNotIn("LoadCredential=", text)
+
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze")
+    def test_the_documented_key_file_gives_one_advisor_one_credential(self):
+        document = (SOURCE / "docs/deployment.md").read_text()
+        key_file = re.search(r"key\.conf <<'END'\n(.*?)END\n", document, re.S)[1]
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            shutil.copytree(self.stage, root, dirs_exist_ok=True)
+            shutil.copytree("/usr/lib/systemd/system", root / "usr/lib/systemd/system",
+                            symlinks=True)
+            beside = root / "etc/systemd/system/terra-advisor@gpt.service.d"
+            beside.mkdir(parents=True)
+            (beside / "key.conf").write_text(key_file)
+            done = run("systemd-analyze", "verify", "--man=no", f"--root={root}",
+                       "terra-advisor@gpt.service")
+            ours = [line for line in done.stdout.splitlines() if "terra" in line]
+            self.assertEqual((ours, done.returncode), ([], 0), done.stdout)
+        self.assertEqual(key_file.count("LoadCredential="), 1)
 
     def test_another_installation_keeps_keys_and_configurations(self):
         key = self.stage / "etc/terra-advisor/keys/OPENAI_API_KEY"
+        key.touch(mode=0o600)
         config = self.stage / "etc/terra-advisor/planner-demo.toml"
         key.write_text("of the user")
         config.write_text("stride = 10\n")

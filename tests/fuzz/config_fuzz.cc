@@ -9,6 +9,7 @@
 #include "advisor/advisor_options.h"
 #include "bus/lcm_url.h"
 #include "bus/process.h"
+#include "bus/toml_config.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace {
@@ -19,6 +20,7 @@ struct Program {
   Program() {
     terra::bus::AddBusOptions(app, bus);
     terra::advisor::AddAdvisorOptions(app, advisor);
+    terra::bus::ReadConfigAsToml(app);
     app.allow_config_extras(CLI::config_extras_mode::error);
   }
 

@@ -53,6 +53,7 @@ LIBRARIES = {
     "png.h": ["terrain/png/"],
     "CLI/": ["bus/", "cli/", "main", "_node", "_options"],
     "CLI11": ["bus/", "cli/", "main"],
+    "toml++/": ["bus/toml_config"],
     "spdlog/": ["bus/", "_node", "main", "cli/"],
 }
 

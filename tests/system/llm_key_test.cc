@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bus/secrets.h"
 #include "tests/support/bar_map.h"
 #include "tests/support/scripted_llm_server.h"
 #include "tests/system/robot.h"
@@ -168,6 +170,39 @@ TEST_F(KeyOfTheModel, IsInNoMessageLogRecordingResultOrOutput) {
   EXPECT_GE(FilesWith(folder, "[key]").size(), 4u)
       << "log, three recordings, results";
   EXPECT_NE(outputs_.find("[key]"), std::string::npos);
+}
+
+// What others of the same user could read.
+TEST_F(KeyOfTheModel, IsInNobodysEnvironmentOnceHeRuns) {
+  for (const char* variable : bus::kApiKeyVariables) {
+    setenv(variable, (kSecret + std::string(variable)).c_str(), 1);
+  }
+  const std::vector<std::string> others = {"map", "planner", "verifier"};
+  const std::vector<std::string> advisors = {"search", "shortcut",  "openai",
+                                             "gemini", "anthropic", "chat"};
+  for (const std::string& name : others) robot_.Start(name);
+  for (const std::string& backend : advisors) {
+    robot_.Start(backend, {"--backend", backend, "--base-url", server_.url(),
+                           "--model", "any"});
+  }
+  for (const char* variable : bus::kApiKeyVariables) unsetenv(variable);
+  const auto read_of = [&](const std::string& name, const std::string& file) {
+    EXPECT_TRUE(robot_.WaitForReady(name)) << name;
+    return ReadBytes("/proc/" + std::to_string(robot_.process(name).pid()) +
+                     "/" + file);
+  };
+  for (const auto& names : {others, advisors}) {
+    for (const std::string& name : names) {
+      const std::string environment = read_of(name, "environ");
+      EXPECT_NE(environment.find("API_KEY="), std::string::npos) << name;
+      EXPECT_EQ(environment.find(kSecret), std::string::npos) << name;
+    }
+  }
+  for (const std::string& name : advisors) {
+    EXPECT_THAT(read_of(name, "limits"),
+                ::testing::ContainsRegex("Max core file size +0 +0 "))
+        << name;
+  }
 }
 
 TEST_F(KeyOfTheModel, OnTheCommandLineIsRefusedWithoutBeingRepeated) {

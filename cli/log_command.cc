@@ -68,10 +68,19 @@ struct AuditArguments {
   bool json = false;
 };
 
-std::string Conclusion(const logger::Audit& audit) {
-  if (!audit.clean()) return std::to_string(audit.num_findings) + " findings";
-  if (audit.unrecorded == 0) return "clean";
-  return "clean, but for " + std::to_string(audit.unrecorded) +
+std::string ConclusionLine(const logger::Audit& audit) {
+  const std::string conclusion = logger::Conclusion(audit);
+  if (!audit.clean()) return conclusion;
+  if (!audit.made_any_again()) {
+    return conclusion + ": no decision of a gate was made again";
+  }
+  if (!audit.closed) {
+    return conclusion +
+           ": what is there is right, but the log has no end (cut, or still "
+           "being written)";
+  }
+  if (audit.unrecorded == 0) return conclusion;
+  return conclusion + ", but for " + std::to_string(audit.unrecorded) +
          " verdicts not made again";
 }
 
@@ -106,7 +115,7 @@ void PrintAudit(const logger::Audit& audit) {
     if (finding.decision != 0) std::cout << ", decision " << finding.decision;
     std::cout << ": " << finding.what << "\n";
   }
-  std::cout << Conclusion(audit) << "\n";
+  std::cout << ConclusionLine(audit) << "\n";
 }
 
 void PrintAuditJson(const logger::Audit& audit) {
@@ -118,6 +127,8 @@ void PrintAuditJson(const logger::Audit& audit) {
                         {"what", finding.what}});
   }
   const nlohmann::json all = {{"clean", audit.clean()},
+                              {"closed", audit.closed},
+                              {"conclusion", logger::Conclusion(audit)},
                               {"sessions", audit.sessions},
                               {"verdicts", audit.verdicts},
                               {"deployed", audit.deployed},
@@ -141,14 +152,15 @@ int RunAudit(const AuditArguments& arguments) {
   } else {
     PrintAudit(audit);
   }
-  return audit.clean() ? kDone : kCouldNot;
+  return audit.passed() ? kDone : kCouldNot;
 }
 
 void AddAudit(CLI::App& log, int& exit_code) {
   CLI::App& command = *log.add_subcommand(
       "audit",
       "Make every verdict and deployment again from its inputs and compare; "
-      "exit 1 if anything differs or is missing. Verdicts on advice that the "
+      "exit 1 if anything differs or is missing, if the log was not closed, or "
+      "if there is nothing to audit. Verdicts on advice that the "
       "recorder turned away in a flood are counted and are no finding");
   const auto arguments = std::make_shared<AuditArguments>();
   command.add_option("file", arguments->file, "LCM event log")->required();

@@ -28,6 +28,12 @@ void Audit::Add(Finding finding) {
   if (findings.size() < kMaxFindings) findings.push_back(std::move(finding));
 }
 
+std::string Conclusion(const Audit& audit) {
+  if (!audit.clean()) return std::to_string(audit.num_findings) + " findings";
+  if (!audit.made_any_again()) return "nothing to audit";
+  return audit.closed ? "clean" : "not closed";
+}
+
 namespace {
 
 // A bound, so that sums of any numbers of a log do not overflow.
@@ -79,6 +85,7 @@ Audit AuditContents(LogContents& contents, const LogReader& reader,
                     const SealChecker& seals) {
   Audit audit;
   AddDamage(reader, seals, audit);
+  audit.closed = !seals.sealed() || seals.closed();
   // Under good seals the log is what was heard.
   const bool as_heard = seals.sealed() && audit.clean();
   if (as_heard) audit.advice_turned_away = TurnedAway(contents, seals);

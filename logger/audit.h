@@ -49,9 +49,22 @@ struct Audit {
   /// it was they. The first kMaxFindings.
   std::vector<std::string> notes;
 
+  /// Not one of our logs, or its last event is the mark that closes it. A log
+  /// that was cut at a seal has only good bytes, and lacks its end.
+  bool closed = true;
+
   bool clean() const { return num_findings == 0; }
+  /// Some decision was made again.
+  bool made_any_again() const { return verdicts + deployed + anchors > 0; }
+  /// No finding, in a whole log, of which something was made again. Only this
+  /// says that the gate was right.
+  bool passed() const { return clean() && closed && made_any_again(); }
   void Add(Finding finding);
 };
+
+/// Returns "clean", "3 findings", "nothing to audit" or "not closed". Findings
+/// are named first, then that there is nothing, then that the end is missing.
+std::string Conclusion(const Audit& audit);
 
 /// Makes every verdict and deployment of a log again, through the gate, from
 /// the inputs that each names (docs/gate.md, invariant 6), and compares byte

@@ -110,9 +110,14 @@ std::string Cards(const LogContents& contents,
   html += Card(
       savings.empty() ? "-" : Number(savings[savings.size() / 2], 1) + " %",
       "median saving, route deployed last");
-  html += Card(audit.clean() ? "clean" : std::to_string(audit.num_findings),
-               audit.clean() ? "audit" : "audit findings",
-               audit.clean() ? "good" : "bad");
+  html += Card(
+      audit.clean() ? Conclusion(audit) : std::to_string(audit.num_findings),
+      audit.clean() ? "audit" : "audit findings",
+      audit.passed() ? "good" : "bad");
+  if (audit.unrecorded > 0) {
+    html += Card(std::to_string(audit.unrecorded),
+                 "verdicts not made again (advice turned away in a flood)");
+  }
   return html + "</div>\n";
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -141,6 +144,42 @@ TEST(Audit, EachPartOfARecordingIsAuditedAlone) {
       made_again += audit.verdicts + audit.deployed;
     }
     EXPECT_EQ(made_again, DecisionsIn(messages)) << "seed " << seed;
+  }
+}
+
+TEST(Audit, ALogCutAtASealIsNotClosed) {
+  const TempFolder folder;
+  const std::string path = RecordParts(EventfulRun(), 1'000'000, folder).at(0);
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto audit_of = [](std::span<const std::uint8_t> log) {
+    LogReader reader(log);
+    return AuditLog(reader);
+  };
+  const Audit whole = audit_of(bytes);
+  EXPECT_TRUE(whole.passed()) << Text(whole);
+  EXPECT_EQ(Conclusion(whole), "clean");
+
+  LogReader reader(bytes);
+  std::int64_t last_event = 0;  // The mark that closes it.
+  while (const auto item = reader.Next()) last_event = item->offset;
+  bytes.resize(static_cast<std::size_t>(last_event));
+  const Audit cut = audit_of(bytes);
+  EXPECT_FALSE(cut.closed);
+  EXPECT_FALSE(cut.passed());
+}
+
+TEST(Audit, ALogWithoutDecisionsIsNothingToAudit) {
+  Messages messages = EventfulRun();
+  std::erase_if(messages, [](const bus::RawMessage& message) {
+    return message.channel == bus::Channel::kVerdict ||
+           message.channel == bus::Channel::kDeployed;
+  });
+  for (const Messages& log : {messages, Messages{messages.front()}}) {
+    const Audit audit = AuditOf(log);
+    EXPECT_TRUE(audit.clean()) << Text(audit);
+    EXPECT_FALSE(audit.passed());
+    EXPECT_EQ(Conclusion(audit), "nothing to audit");
   }
 }
 

@@ -78,10 +78,11 @@ std::vector<RequestStory> Stories(const LogContents& contents) {
   const auto begin_of = [](const RequestStory& story) {
     return story.asked_us != 0 ? story.asked_us : story.baseline_us;
   };
-  std::sort(in_order.begin(), in_order.end(),
-            [&](const RequestStory& a, const RequestStory& b) {
-              return begin_of(a) < begin_of(b);
-            });
+  // At one time, by number: the order in which the map has them.
+  std::stable_sort(in_order.begin(), in_order.end(),
+                   [&](const RequestStory& a, const RequestStory& b) {
+                     return begin_of(a) < begin_of(b);
+                   });
   return in_order;
 }
 

@@ -1,8 +1,8 @@
 #include "cli/advisor_watch.h"
 
 #include <algorithm>
-#include <string_view>
 
+#include "bus/process_state.h"
 #include "cli/output.h"
 #include "cli/status_counter.h"
 
@@ -27,8 +27,9 @@ void AdvisorWatch::OnStatus(const terra_msg::status_t& status) {
   advisor.name = Printable(status.status_name, kLongestName);
   advisor.state = Printable(status.state, kLongestText);
   advisor.error = Printable(status.last_error, kLongestText);
-  const bool idle = status.state == "ready" ||
-                    std::string_view(status.state).starts_with("failing");
+  const bus::ProcessState state = bus::StateOf(status.state);
+  const bool idle = state == bus::ProcessState::kReady ||
+                    state == bus::ProcessState::kFailing;
   const bool failed = CounterOf(status, "failures").value_or(0) > 0 &&
                       !status.last_error.empty();
   advisor.idle_heartbeats = idle && failed ? advisor.idle_heartbeats + 1 : 0;

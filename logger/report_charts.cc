@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "bus/process_state.h"
 #include "logger/report_html.h"
 #include "verifier/verify.h"
 
@@ -195,9 +196,10 @@ void DrawHeartbeats(const LogContents& contents, Lanes& lanes) {
   for (const auto& [name, all] : by_name) {
     lanes.Begin(name + " alive");
     for (const auto* status : all) {
-      lanes.Tick(status->time_us, DoesItsWork(status->message.state)
-                                      ? kCandidateColor
-                                      : kBadColor);
+      lanes.Tick(status->time_us,
+                 bus::DoesItsWork(bus::StateOf(status->message.state))
+                     ? kCandidateColor
+                     : kBadColor);
     }
   }
 }

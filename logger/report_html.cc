@@ -8,10 +8,6 @@
 
 namespace terra::logger {
 
-bool DoesItsWork(std::string_view state) {
-  return state.starts_with("ready") || state.starts_with("working");
-}
-
 std::string Escape(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

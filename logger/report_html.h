@@ -17,9 +17,6 @@ inline constexpr const char* kBadColor = "#c62f2f";
 inline constexpr const char* kNoRouteColor = "#d5dae2";
 inline constexpr const char* kMutedColor = "#9aa4b2";
 
-/// Whether a process in this state does its work: "ready", "working", ...
-bool DoesItsWork(std::string_view state);
-
 /// Returns a text as it must stand in HTML: markup escaped, bytes that are not
 /// printable replaced.
 std::string Escape(std::string_view text);

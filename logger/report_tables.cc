@@ -6,6 +6,7 @@
 #include <set>
 #include <variant>
 
+#include "bus/process_state.h"
 #include "logger/report_html.h"
 #include "verifier/verify.h"
 
@@ -124,12 +125,14 @@ std::string ProcessTable(const LogContents& contents) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& [name, process] : processes) {
     const terra_msg::status_t& last = *process.last;
-    rows.push_back({Escape(name), Escape(last.host), std::to_string(last.pid),
-                    std::to_string(process.sessions.size()),
-                    std::to_string(process.heartbeats),
-                    Number(process.longest_silence, 1) + " s",
-                    Long(DoesItsWork(last.state) ? "good" : "bad", last.state),
-                    Long("", last.last_error), Long("", last.build_id)});
+    rows.push_back(
+        {Escape(name), Escape(last.host), std::to_string(last.pid),
+         std::to_string(process.sessions.size()),
+         std::to_string(process.heartbeats),
+         Number(process.longest_silence, 1) + " s",
+         Long(bus::DoesItsWork(bus::StateOf(last.state)) ? "good" : "bad",
+              last.state),
+         Long("", last.last_error), Long("", last.build_id)});
   }
   return Table({"process", "host", "pid", "starts", "heartbeats",
                 "longest silence", "last state", "last error", "build"},

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bus/process_state.h"
+
 namespace terra::cli {
 namespace {
 
@@ -89,6 +91,17 @@ TEST(AdvisorWatchTest, AFloodOfNamesIsBoundedAndFitForATerminal) {
   }
   EXPECT_LE(watch.advisors().size(), 64u);
   EXPECT_EQ(watch.advisors().at(0).name.find('\x1b'), std::string::npos);
+}
+
+TEST(ProcessState, IsReadFromTheFirstWordOfItsText) {
+  using bus::ProcessState;
+  EXPECT_EQ(bus::StateOf("ready"), ProcessState::kReady);
+  EXPECT_EQ(bus::StateOf("working"), ProcessState::kWorking);
+  EXPECT_EQ(bus::StateOf("failing: breaker open"), ProcessState::kFailing);
+  EXPECT_EQ(bus::StateOf("failing"), ProcessState::kFailing);
+  for (const char* other : {"", "waiting for map", "readying", "not ready"}) {
+    EXPECT_EQ(bus::StateOf(other), ProcessState::kOther) << other;
+  }
 }
 
 }  // namespace

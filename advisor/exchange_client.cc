@@ -11,8 +11,8 @@
 
 #include "advisor/answer_parser.h"
 #include "advisor/interruptible_wait.h"
-#include "output/output_file.h"
 #include "advisor/thinking.h"
+#include "output/output_file.h"
 #include "terrain/utf8.h"
 
 namespace terra::advisor {
@@ -60,6 +60,14 @@ std::optional<std::uintmax_t> AnswerSize(const fs::path& path) {
   std::error_code failed;
   const std::uintmax_t size = fs::file_size(path, failed);
   return failed ? std::nullopt : std::optional(size);
+}
+
+/// A folder, a pipe or a device under the answer's name: it never becomes an
+/// answer by itself, and reading it might wait without end.
+bool IsNoFile(const fs::path& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  return fs::exists(status) && !fs::is_regular_file(status);
 }
 
 /// What an answer file holds at a look.
@@ -144,17 +152,21 @@ LlmReply ExchangeClient::Ask(const LlmRequest& request, std::stop_token stop) {
   std::optional<std::uintmax_t> before;
   std::string said;
   Look look;
+  // The worker's thread: nobody waits for it but the question.
+  const auto say_once = [&](const std::string& problem) {
+    if (problem == said) return;
+    std::cerr << answer.string() + ": " + problem +
+                     "; waiting until an answer is in it\n";
+    said = problem;
+  };
   for (;;) {
     const auto size = AnswerSize(answer);
     if (size && size == before) {
       look = LookInto(answer, *size);
       if (look.answered || look.too_large) break;
-      // The worker's thread: nobody waits for it but the question.
-      if (look.problem != said) {
-        std::cerr << answer.string() + ": " + look.problem +
-                         "; waiting until an answer is in it\n";
-        said = look.problem;
-      }
+      say_once(look.problem);
+    } else if (!size && IsNoFile(answer)) {
+      say_once("is no regular file: replace it by one");
     }
     before = size;
     if (seconds() >= options_.deadline_s) {

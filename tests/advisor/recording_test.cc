@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "advisor/exchange_client.h"
 #include "advisor/limited_client.h"
@@ -252,6 +253,28 @@ TEST_F(ExchangeTest, ABlankAnswerIsWaitedForAndThatIsSaidOnce) {
     EXPECT_EQ(errors.Times("is empty"), 1) << errors.Text();
     std::ofstream(answer) << "Yes";
     EXPECT_EQ(client_.Ask(request, {}).text, "Yes");
+  }
+}
+
+TEST_F(ExchangeTest, AnAnswerThatIsNoFileIsSaidOnce) {
+  const LlmRequest request = Question("a");
+  const fs::path answer = FolderOf(request) / "answer.txt";
+  fs::create_directories(FolderOf(request));
+  options_.deadline_s = 0.1;
+  for (const bool pipe : {false, true}) {
+    if (pipe) {
+      ASSERT_EQ(mkfifo(answer.c_str(), 0600), 0);
+    } else {
+      fs::create_directory(answer);
+    }
+    CapturedErrors errors;
+    const LlmReply none = ExchangeClient(options_).Ask(request, {});
+    EXPECT_EQ(none.reason, NoAnswer::kDeadline);
+    EXPECT_THAT(none.error, HasSubstr("is no regular file"));
+    EXPECT_TRUE(errors.Await(answer.string() + ": is no regular file"))
+        << errors.Text();
+    EXPECT_EQ(errors.Times("is no regular file"), 1) << errors.Text();
+    fs::remove(answer);
   }
 }
 

@@ -224,7 +224,8 @@ std::string DatasetJson(const GenerateOptions& options,
         {"rejections", ToJson(rejections[i])}};
   }
   json["digest"] = digest;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) +
+         "\n";
 }
 
 Status PrepareFolder(const fs::path& folder) {

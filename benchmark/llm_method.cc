@@ -186,7 +186,8 @@ std::string SettingsJson(const MethodOptions& options,
       {"noise", options.noise_percent},
       {"seed", options.seed},
       {"polish", polish}};
-  return json.dump();
+  return json.dump(-1, ' ', false,
+                   nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace

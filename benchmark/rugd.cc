@@ -120,7 +120,9 @@ std::string DatasetJson(const RugdOptions& options, const Tables& tables) {
     json["frames"] = fs::absolute(options.frames).string();
   }
   json["digest"] = advisor::Sha256Hex(tables.digest_lines);
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false,
+                   nlohmann::ordered_json::error_handler_t::replace) +
+         "\n";
 }
 
 Status WriteTables(const RugdOptions& options, const Tables& tables) {

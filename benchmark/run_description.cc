@@ -87,7 +87,9 @@ void ReadConfiguration(const ordered_json& c, RunDescription& d) {
   d.clearance_cells =
       advisor::IntegerAt<int>(c.at("cost_model"), "clearance_cells");
   d.repeats = advisor::IntegerAt<int>(c, "repeats");
-  d.settings_json = c.at("settings").dump();
+  d.settings_json =
+      c.at("settings")
+          .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 // The first field beside the settings that was not read; empty = none. Settings

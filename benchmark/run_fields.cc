@@ -109,12 +109,13 @@ bool IsPathOf(std::string_view path, const RunField& field) {
 
 // One text for one value: 5 and 5.0 are the same percentage.
 std::string TextOf(const json& value) {
-  return value.is_number_float() ? FormatNumber(value.get<double>())
-                                 : value.dump();
+  return value.is_number_float()
+             ? FormatNumber(value.get<double>())
+             : value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 std::string Quoted(const std::string& text) {
-  return json(text).dump();
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 bool Decides(FieldRole role) {

@@ -55,7 +55,9 @@ int RunExport(ExportArguments& arguments) {
         {"left_out", written->left_out},
         {"without_baseline", written->without_baseline},
         {"files", written->files}};
-    std::cout << json.dump() << "\n";
+    std::cout << json.dump(-1, ' ', false,
+                           nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
     return kDone;
   }
   for (const std::string& file : written->files) std::cout << file << "\n";
@@ -96,7 +98,9 @@ int RunImport(const ImportArguments& arguments) {
         {"failed", batch->failed},     {"missing", batch->missing},
         {"foreign", batch->foreign},   {"doubled", batch->doubled},
         {"failures", batch->failures}};
-    std::cout << json.dump() << "\n";
+    std::cout << json.dump(-1, ' ', false,
+                           nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
   } else {
     PrintImported(*batch);
   }

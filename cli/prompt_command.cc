@@ -100,7 +100,9 @@ int RunPrompt(const PromptArguments& arguments) {
         {"prompt_id", question.request.prompt_id},
         {"reference", question.reference_id},
         {"seconds", prepared->seconds}};
-    std::cout << json.dump() << "\n";
+    std::cout << json.dump(-1, ' ', false,
+                           nlohmann::ordered_json::error_handler_t::replace)
+              << "\n";
   } else {
     const std::size_t images = question.request.pictures.size();
     std::cout << arguments.out

@@ -241,6 +241,26 @@ TEST_F(TerraCommand, AFileWithoutEventsIsNoLog) {
   }
 }
 
+TEST_F(TerraCommand, AForeignLogIsNothingToAudit) {
+  // One event of LCM's format: sync word, number, time, lengths, channel, data.
+  const std::string log(
+      "\xED\xA1\xDA\x01"
+      "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\1"
+      "\0\0\0\3\0\0\0\4FOOdata",
+      35);
+  const RunResult run =
+      Terra({"log", "audit", folder_.Write("foreign.lcmlog", log)});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.output, HasSubstr("nothing to audit"));
+}
+
+TEST_F(TerraCommand, ANameThatIsNoUtf8StandsInTheJsonOfAPrompt) {
+  const RunResult run =
+      OnMap({"prompt", "--json", "--out", folder_.Path("question\xFF")});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(run.output, HasSubstr("question\uFFFD\""));
+}
+
 TEST(TerraUsage, WrongUsageExitsWithTwoAndPointsToHelp) {
   const std::vector<std::vector<std::string>> wrong = {
       {},

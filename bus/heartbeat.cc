@@ -59,6 +59,9 @@ void Heartbeat::SendStatus(const Node& node) {
   counters.emplace_back("sent", bus_.counters().sent);
   counters.emplace_back("send_failed", bus_.counters().send_failed);
   counters.emplace_back("oversized", bus_.counters().oversized);
+  counters.emplace_back("fragments", bus_.counters().fragments);
+  counters.emplace_back("no_message", bus_.counters().no_message);
+  counters.emplace_back("lost_in_kernel", bus_.counters().lost_in_kernel);
   counters.emplace_back("queue_dropped", inbox_.dropped());
   counters.emplace_back("log_dropped", LogLinesDropped());
   node.AddCounters(counters);

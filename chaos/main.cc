@@ -59,8 +59,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
         ->group("Faults (with several, one of them at a time, by the seed)");
   }
   app.add_flag("--all", arguments.all,
-               "every fault but offset-wrap, which ends processes by liblcm's "
-               "own fault, in 1.3.1 as in 1.5.2");
+               "every fault but offset-wrap, which ends other programs on the "
+               "bus that read with liblcm (1.3.1 as 1.5.2)");
   app.add_flag("--flood", arguments.chaos.flood,
                "as fast as the machine can, instead of --rate");
   app.add_flag("--many-senders", arguments.many_senders,

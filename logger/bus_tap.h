@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "bus/advice_receiver.h"
@@ -13,15 +15,15 @@
 #include "terrain/result.h"
 
 struct pollfd;
-struct _lcm_recv_buf_t;
 
 namespace terra::logger {
 
 /// Hears every channel of the deployed bus, the project's or not, and ADVICE
 /// of the advice bus through the bounded receiver.
 ///
-/// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), room
-///         for a burst of 20,000 messages behind it, then the EventQueue.
+/// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), then
+/// the
+///         EventQueue.
 /// Threads: one of its own fills the queue and does nothing else; the counts
 ///          may be read from any.
 class BusTap {
@@ -33,6 +35,10 @@ class BusTap {
   struct Counters {
     std::atomic<std::int64_t> heard{0};
     std::atomic<std::int64_t> refused{0};
+    /// Datagrams of the deployed bus, as in bus::UdpmReceiver::Counters.
+    std::atomic<std::int64_t> fragments{0};
+    std::atomic<std::int64_t> no_message{0};
+    std::atomic<std::int64_t> lost_in_kernel{0};
     std::atomic<std::int64_t> advice_over_limit{0};
     std::atomic<std::int64_t> advice_malformed{0};
     std::atomic<std::int64_t> advice_lost_in_kernel{0};
@@ -52,7 +58,8 @@ class BusTap {
 
  private:
   BusTap(EventQueue& queue, std::unique_ptr<bus::LcmLink> link, int stop_fd);
-  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
+  static void OnMessage(std::string_view channel,
+                        std::span<const std::uint8_t> bytes,
                         void* tap) noexcept;
   void Listen();
   void HearDeployedBus(pollfd& lcm, int silence_ms);

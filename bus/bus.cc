@@ -83,9 +83,9 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
 }
 
 Result<std::unique_ptr<Bus>> Bus::Open(const std::string& url,
-                                       ChannelNames names) {
+                                       ChannelNames names, Use use) {
   if (const Status room = RoomForLcm(); !room) return room.error();
-  Result<std::unique_ptr<LcmLink>> link = LcmLink::Open(url);
+  Result<std::unique_ptr<LcmLink>> link = LcmLink::Open(url, use);
   if (!link) return link.error();
   std::unique_ptr<Bus> bus(new Bus(*std::move(link), std::move(names)));
   if (bus->link_->url().is_tcpq()) {

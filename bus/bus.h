@@ -46,7 +46,8 @@ class Bus : public Transport {
   };
 
   static Result<std::unique_ptr<Bus>> Open(const std::string& url,
-                                           ChannelNames names);
+                                           ChannelNames names,
+                                           Use use = Use::kSendAndHear);
   ~Bus() override;
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;

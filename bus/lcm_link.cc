@@ -148,10 +148,11 @@ void Add(int epoll_fd, int fd) {
 
 }  // namespace
 
-Result<std::unique_ptr<LcmLink>> LcmLink::Open(const std::string& url) {
+Result<std::unique_ptr<LcmLink>> LcmLink::Open(const std::string& url,
+                                               Use use) {
   Result<LcmUrl> parsed = ParseLcmUrl(url);
   if (!parsed) return parsed.error();
-  std::unique_ptr<LcmLink> link(new LcmLink(*std::move(parsed)));
+  std::unique_ptr<LcmLink> link(new LcmLink(*std::move(parsed), use));
   if (link->url_.is_tcpq()) {
     const Status opened = link->OpenTcpq();
     if (!opened) return opened.error();
@@ -193,7 +194,7 @@ int LcmLink::fd() const {
 Status LcmLink::OpenReceiver() {
   Result<UdpmReceiver> opened = UdpmReceiver::Open(url_.text());
   if (!opened) return WhyUnusable(url_.text(), opened.error().message);
-  if (!ComesBack(out_, *opened)) {
+  if (use_ == Use::kSendAndHear && !ComesBack(out_, *opened)) {
     return WhyUnusable(url_.text(),
                        "what is sent does not come back (a firewall?)");
   }
@@ -228,6 +229,7 @@ Status LcmLink::Subscribe(const std::string& channel, Handler handler,
 
 bool LcmLink::Publish(const std::string& channel,
                       std::span<const std::uint8_t> bytes) {
+  if (use_ == Use::kHear) return false;
   const auto send = [&] {
     return lcm_publish(out_, channel.c_str(), bytes.data(),
                        static_cast<unsigned>(bytes.size())) == 0;

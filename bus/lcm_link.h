@@ -23,6 +23,10 @@ namespace terra::bus {
 /// back: liblcm, and LcmLink.
 inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
 
+/// What a connection is for. One that only hears sends nothing at all, and so
+/// cannot see whether what is sent would come back.
+enum class Use { kSendAndHear, kHear };
+
 /// One connection to an LCM bus. liblcm sends, and reads memq://, file:// and
 /// tcpq://; udpm:// is read by a UdpmReceiver, since one packet can end a
 /// process that reads it with liblcm.
@@ -45,7 +49,8 @@ class LcmLink {
   static constexpr std::size_t kMessagesPerHandle = 64;
 
   /// Errors: a URL that is none, or that liblcm refuses.
-  static Result<std::unique_ptr<LcmLink>> Open(const std::string& url);
+  static Result<std::unique_ptr<LcmLink>> Open(const std::string& url,
+                                               Use use = Use::kSendAndHear);
   ~LcmLink();
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
@@ -58,7 +63,8 @@ class LcmLink {
   Status Subscribe(const std::string& channel, Handler handler, void* user,
                    int queue_capacity);
 
-  /// Returns false when the message could not be sent. A hub that takes nothing
+  /// Returns false when the message could not be sent; with Use::kHear always.
+  /// A hub that takes nothing
   /// delays this by kSendPatience, once.
   bool Publish(const std::string& channel, std::span<const std::uint8_t> bytes);
 
@@ -81,7 +87,7 @@ class LcmLink {
     int queue_capacity;
   };
 
-  explicit LcmLink(LcmUrl url) : url_(std::move(url)) {}
+  LcmLink(LcmUrl url, Use use) : url_(std::move(url)), use_(use) {}
   Status OpenTcpq();
   Status OpenReceiver();
   bool SubscribeTo(Subscription& subscription);
@@ -94,6 +100,7 @@ class LcmLink {
   void LookAgainIn(std::int64_t milliseconds) const;
 
   const LcmUrl url_;
+  const Use use_;
   mutable std::mutex mutex_;                // For all below.
   std::deque<Subscription> subscriptions_;  // liblcm is given their addresses.
   std::optional<UdpmReceiver> receiver_;  // udpm: from the first subscription.

@@ -117,9 +117,7 @@ Result<std::unique_ptr<terra::bus::Node>> MakeNode(
   AdviceReceiver& receiver = *connections.overheard;
   context.loop.Watch(
       receiver.fd(), [&receiver, listener](terra::bus::Time now) {
-        const auto us = std::chrono::duration_cast<std::chrono::microseconds>(
-            now.time_since_epoch());
-        receiver.Drain(us.count(), 64,
+        receiver.Drain(terra::bus::MonotonicMicroseconds(now), 64,
                        [listener](const terra::bus::LcmDatagram& datagram,
                                   terra::bus::SenderAddress) {
                          listener->Overhear(datagram.payload);
@@ -136,6 +134,7 @@ int main(int argc, char** argv) {
   terra::bus::ProcessSpec spec;
   spec.program = "terra-chaos";
   spec.name = "chaos";
+  spec.is_advisor = true;
   spec.description =
       "A misbehaving advisor: attacks a running set the way a broken or "
       "hostile advisor would, says what the gate made of it, and exits with 1 "

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include <sys/eventfd.h>
 
+#include "bus/advisor_channels.h"
 #include "bus/bus.h"
 #include "bus/envelope.h"
 #include "bus/lcm_url.h"
@@ -36,12 +38,6 @@ void Copy(std::uint64_t from, std::atomic<std::int64_t>& to) {
   to = static_cast<std::int64_t>(from);
 }
 
-std::int64_t MonotonicMicroseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
@@ -56,7 +52,7 @@ std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
 }
 
 Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
-                                             const std::string& advice_channel,
+                                             const bus::ChannelNames& names,
                                              EventQueue& queue) {
   Result<std::unique_ptr<bus::LcmLink>> link = bus::LcmLink::Open(
       WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()));
@@ -72,7 +68,12 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
   const Result<bus::LcmUrl> advice = bus::ParseLcmUrl(urls.advice);
   if (!advice) return advice.error();
   if (advice->is_udpm() && !bus::SameBus(*advice, tap->link_->url())) {
-    auto opened = bus::AdviceReceiver::Open(urls.advice, advice_channel);
+    tap->advice_channel_ = names.name(bus::Channel::kAdvice);
+    std::vector<std::string> channels = {tap->advice_channel_};
+    for (const bus::Channel channel : bus::kAdvisorChannels) {
+      channels.push_back(names.name(channel));
+    }
+    auto opened = bus::AdviceReceiver::Open(urls.advice, channels);
     if (!opened) return opened.error();
     tap->advice_.emplace(*std::move(opened));
   }
@@ -145,14 +146,17 @@ void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
 }
 
 void BusTap::DrainAdvice() {
-  advice_->Drain(MonotonicMicroseconds(), kDatagramsPerTurn,
+  advice_->Drain(bus::MonotonicMicroseconds(bus::Clock::now()),
+                 kDatagramsPerTurn,
                  [this](const bus::LcmDatagram& datagram, bus::SenderAddress) {
                    ++counters_.heard;
                    queue_.Push(bus::UnixMicroseconds(), datagram.channel,
                                datagram.payload);
                  });
   const bus::AdviceReceiver::Counters& read = advice_->counters();
-  Copy(read.over_limit, counters_.advice_over_limit);
+  const std::uint64_t of_advice = advice_->over_limit(advice_channel_);
+  Copy(of_advice, counters_.advice_over_limit);
+  Copy(read.over_limit - of_advice, counters_.advisors_over_limit);
   Copy(read.malformed, counters_.advice_malformed);
   Copy(read.lost_in_kernel, counters_.advice_lost_in_kernel);
 }

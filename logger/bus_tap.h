@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "bus/advice_receiver.h"
+#include "bus/channels.h"
 #include "bus/lcm_link.h"
 #include "logger/event_queue.h"
 #include "terrain/result.h"
@@ -18,8 +19,8 @@ struct pollfd;
 
 namespace terra::logger {
 
-/// Hears every channel of the deployed bus, the project's or not, and ADVICE
-/// of the advice bus through the bounded receiver.
+/// Hears every channel of the deployed bus, the project's or not, and on the
+/// advice bus what advisors say, each channel within its limits.
 ///
 /// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), then
 /// the
@@ -40,6 +41,7 @@ class BusTap {
     std::atomic<std::int64_t> no_message{0};
     std::atomic<std::int64_t> lost_in_kernel{0};
     std::atomic<std::int64_t> advice_over_limit{0};
+    std::atomic<std::int64_t> advisors_over_limit{0};  ///< Not ADVICE.
     std::atomic<std::int64_t> advice_malformed{0};
     std::atomic<std::int64_t> advice_lost_in_kernel{0};
   };
@@ -47,7 +49,7 @@ class BusTap {
   /// The queue must outlive the tap.
   /// Errors: a bus that cannot be heard, with what to do about it.
   static Result<std::unique_ptr<BusTap>> Open(const Urls& urls,
-                                              const std::string& advice_channel,
+                                              const bus::ChannelNames& names,
                                               EventQueue& queue);
   /// Hears what was sent before, then ends.
   ~BusTap();
@@ -69,6 +71,7 @@ class BusTap {
   std::unique_ptr<bus::LcmLink> link_;
   int stop_fd_;
   std::optional<bus::AdviceReceiver> advice_;
+  std::string advice_channel_;
   Counters counters_;
   std::thread thread_;
 };

@@ -296,7 +296,7 @@ TEST(HeartbeatTest, TellsAChangedStateAtOnceAndElseOnceASecond) {
   const auto bus = OpenBus("memq://");
   Inbox inbox;
   Outbox out(*bus, 7);
-  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  Heartbeat heartbeat("test", "", out, *bus, *bus, inbox);
   StateNode node;
   const auto sent_at = [&](milliseconds at) -> std::int64_t {
     heartbeat.Advance(node, Time(at));
@@ -314,7 +314,7 @@ TEST(HeartbeatTest, AStateThatFluttersMakesNoFloodAndItsLastIsTold) {
   const auto bus = OpenBus("memq://");
   Inbox inbox;
   Outbox out(*bus, 7);
-  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  Heartbeat heartbeat("test", "", out, *bus, *bus, inbox);
   StateNode node;
   Time next = Time(milliseconds(0));
   for (int i = 0; i < 1000; ++i) {

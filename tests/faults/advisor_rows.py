@@ -1,4 +1,5 @@
 """Advisors that are absent, dead, frozen, slow, lying, flooding."""
+import pathlib
 import re
 import time
 
@@ -6,6 +7,7 @@ import bus
 from rig import require
 from rows import row
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIES = {
     "geometry": ["through-obstacles", "jumps", "duplicated-points", "huge-routes",
                  "too-few-points", "wrong-start", "wrong-goal"],
@@ -203,6 +205,36 @@ def hostile_on_both_ports(rig):
     rig.serve()
     rig.await_candidate()
     return (f"served {told(attack)}, in a quiet phase {told(quiet)}; no process ends")
+
+
+ADVISOR_USER = 64_999  # nobody's; stands for the user of the advisor units
+
+
+@row("the firewall keeps a hostile advisor off the deployed port", "GATE 6; LCM firewall",
+     ["no rule"], short=True)
+def kept_off(rig):
+    rules = (ROOT / "systemd" / "advisors.nft").read_text()
+    rules = rules.replace('"terra-advisor"', str(ADVISOR_USER))
+    if rig.flaw != "no rule":
+        done = rig.run("nft", "-f", "-", input=rules)
+        require(done.returncode == 0, f"nft: {done.stderr}")
+    before = ("setpriv", f"--reuid={ADVISOR_USER}", "--clear-groups")
+    rig.define("searcher", "terra-advisor", "--name", "searcher", before=before)
+    rig.set_up("searcher", "logger")
+    rig.define("chaos", "terra-chaos", "--through-obstacles", "--half-fragments", "--for", "3",
+               "--seed", 7, "--to", "deployed", before=before)
+    rig.start("chaos")
+    fragments = rig.counter("verifier", "fragments")
+    served = served_in(rig, 4.0, rig["chaos"].running)
+    rig.await_(lambda: not rig["chaos"].running(), 10, "terra-chaos does not end")
+    rig.hear(1.2)  # a heartbeat
+    require(rig.counter("verifier", "fragments") == fragments, "fragments passed the firewall")
+    rig.alive("map", "planner", "verifier", "searcher", "logger")
+    words = rig["chaos"].output()
+    rig.injected += sum(int(sent) for sent in re.findall(r"(\d+) misdeeds", words))
+    rig.serve()
+    rig.await_candidate()
+    return f"served {told(served)}; nothing passes, and advice is heard as before"
 
 
 def served_in(rig, seconds, while_):

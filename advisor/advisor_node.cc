@@ -28,10 +28,9 @@ double Seconds(bus::Duration duration) {
 }  // namespace
 
 AdvisorNode::AdvisorNode(std::string name, std::unique_ptr<Backend> backend,
-                         bus::Outbox& out, bus::Outbox& advice,
-                         std::function<void()> wake)
+                         bus::Outbox& out, std::function<void()> wake)
     : name_(std::move(name)),
-      advice_(advice),
+      out_(out),
       map_(out),
       answer_time_(backend->usual_seconds()),
       worker_(std::move(backend), std::move(wake)) {
@@ -85,7 +84,7 @@ void AdvisorNode::OnPose(const pose_t& message, bus::Time now) {
 void AdvisorNode::OnVerdict(const verdict_t& message, bus::Time now) {
   const bool own = message.subject == verdict_t::SUBJECT_ADVICE &&
                    message.advisor == name_ &&
-                   message.advisor_session == advice_.session() &&
+                   message.advisor_session == out_.session() &&
                    message.attempt == jobs_;
   if (!own || message.code != verdict_t::CODE_LATE) return;
   if (work_ != Work::kAnswered || again_at_ != bus::kNever) return;
@@ -156,14 +155,14 @@ void AdvisorNode::Publish(const AdviceWorker::Done& done, bus::Time now) {
   current_ =
       ToMessages({name_, worker_.backend().method(), worker_.backend().name()},
                  done.job, done.answer);
-  for (advice_t& message : current_) advice_.Send(message);
+  for (advice_t& message : current_) out_.Send(message);
   repeat_.Postpone(now);
 }
 
 bus::Time AdvisorNode::Advance(bus::Time now) {
   if (const auto done = worker_.Take()) Publish(*done, now);
   if (!current_.empty() && repeat_.Due(now)) {
-    for (advice_t& message : current_) advice_.Send(message);
+    for (advice_t& message : current_) out_.Send(message);
   }
   if (now >= again_at_) Begin(now);
   const bus::Time repeat = current_.empty() ? bus::kNever : repeat_.next();

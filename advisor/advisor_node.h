@@ -21,10 +21,9 @@ namespace terra::advisor {
 /// that passes the anchor, and then the work begins again further ahead.
 class AdvisorNode : public bus::Node {
  public:
-  /// `advice` sends on the advice bus, `out` on the deployed one.
+  /// `out` sends on the advice bus.
   AdvisorNode(std::string name, std::unique_ptr<Backend> backend,
-              bus::Outbox& out, bus::Outbox& advice,
-              std::function<void()> wake);
+              bus::Outbox& out, std::function<void()> wake);
 
   bus::Time Advance(bus::Time now) override;
   std::string state() const override;
@@ -42,7 +41,7 @@ class AdvisorNode : public bus::Node {
   void Publish(const AdviceWorker::Done& done, bus::Time now);
 
   std::string name_;
-  bus::Outbox& advice_;
+  bus::Outbox& out_;
   bus::MapReceiver map_;
   bus::SenderTracker planner_;
   bus::SenderTracker gate_;

@@ -1,46 +1,18 @@
 #pragma once
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "bus/udpm_receiver.h"
 #include "terrain/result.h"
 
 namespace terra::bus {
-
-/// One LCM message that arrived in one datagram. Views into the bytes it was
-/// read from.
-struct LcmDatagram {
-  std::uint32_t sequence = 0;
-  std::string_view channel;
-  std::span<const std::uint8_t> payload;
-};
-
-inline constexpr std::size_t kMaxDatagramPayload = 60'000;  ///< Bytes.
-inline constexpr std::size_t kMaxChannelName = 63;          ///< Bytes.
-
-/// Reads LCM's one-datagram form: "LC02", a big-endian uint32 sequence number,
-/// the channel name with its NUL, the payload. Nothing else is taken: no
-/// fragments ("LC03"), no empty, long or unprintable name, no payload above
-/// kMaxDatagramPayload. Any bytes are safe.
-std::optional<LcmDatagram> ParseLcmDatagram(
-    std::span<const std::uint8_t> bytes);
-
-/// IPv4 address and UDP port, both in host order.
-struct SenderAddress {
-  std::uint32_t address = 0;
-  std::uint16_t port = 0;
-
-  friend auto operator<=>(const SenderAddress&, const SenderAddress&) = default;
-};
 
 /// Admits at most per_sender messages of one sender and at most `all` messages
 /// together in any second (sliding windows, not buckets: the bound holds for
@@ -73,14 +45,12 @@ class AdviceRateLimiter {
   std::map<SenderAddress, std::size_t> of_sender_;  // Rows in last_second_.
 };
 
-/// The bounded receiver of the advice bus, for gate and logger.
+/// The receiver of the advice bus: advisors say there all that they say.
 ///
-/// liblcm (1.3.1 to 1.5.2) can be made to crash by one packet, and its queues
-/// keep the oldest messages of a flood. So the advice bus is read from a socket
-/// of its own: everything is read (so that the socket's buffer does not fill
-/// with a flood), only whole messages of one channel are taken, and of those no
-/// more than the limiter admits. The rest is counted. No byte that arrives can
-/// do more than that.
+/// A UdpmReceiver, of whose messages only those of some channels are taken, and
+/// of each channel no more than its own limiter admits: a flood on one channel
+/// leaves the others alone. Everything is read, so that the socket's buffer
+/// does not fill with a flood. What is not handed over is counted.
 ///
 /// Threads: one thread owns it. It has no thread of its own; wait for fd().
 class AdviceReceiver {
@@ -98,22 +68,21 @@ class AdviceReceiver {
     std::uint64_t lost_in_kernel = 0;  ///< Dropped before they could be read.
   };
 
-  /// Opens a socket on the group and port of a udpm:// URL, beside any number
-  /// of other listeners, LCM's own included. Takes messages of `channel` only.
-  /// (For memq:// and file:// URLs a Bus on the same URL does the work.)
+  /// Listens on a udpm:// URL to `channels`, each within `limits`. (For memq://
+  /// and file:// URLs a Bus on the same URL does the work.)
   ///
-  /// Errors: kInvalid for a URL that is not udpm; kUnavailable when the system
-  /// refuses, with the reason (no multicast route, port in use).
+  /// Errors: those of UdpmReceiver::Open.
   static Result<AdviceReceiver> Open(const std::string& url,
-                                     std::string channel,
+                                     const std::vector<std::string>& channels,
                                      AdviceRateLimiter::Limits limits = {});
-
-  AdviceReceiver(AdviceReceiver&& other) noexcept;
-  AdviceReceiver& operator=(AdviceReceiver&& other) noexcept;
-  ~AdviceReceiver();
+  static Result<AdviceReceiver> Open(const std::string& url,
+                                     const std::string& channel,
+                                     AdviceRateLimiter::Limits limits = {}) {
+    return Open(url, std::vector<std::string>{channel}, limits);
+  }
 
   /// To be polled for reading.
-  int fd() const { return fd_; }
+  int fd() const { return receiver_.fd(); }
 
   /// Reads what has arrived, at most max_datagrams, without waiting, and hands
   /// over what is admitted. now_us is the caller's monotonic clock. Returns how
@@ -121,20 +90,26 @@ class AdviceReceiver {
   std::size_t Drain(std::int64_t now_us, std::size_t max_datagrams,
                     const Handler& handler);
 
+  /// Of all channels together.
   const Counters& counters() const { return counters_; }
+  /// Messages of one channel that its limiter refused.
+  std::uint64_t over_limit(const std::string& channel) const;
 
  private:
-  static constexpr std::size_t kBatch = 16;
+  struct Heard {
+    std::string channel;
+    AdviceRateLimiter limiter;
+    std::uint64_t over_limit = 0;
+  };
 
-  AdviceReceiver(int fd, std::string channel, AdviceRateLimiter limiter);
-  void Take(std::span<const std::uint8_t> bytes, SenderAddress sender,
+  AdviceReceiver(UdpmReceiver receiver, std::vector<Heard> heard)
+      : receiver_(std::move(receiver)), heard_(std::move(heard)) {}
+  void Take(const LcmDatagram& datagram, SenderAddress sender,
             std::int64_t now_us, const Handler& handler);
 
-  int fd_ = -1;
-  std::string channel_;
-  AdviceRateLimiter limiter_;
+  UdpmReceiver receiver_;
+  std::vector<Heard> heard_;
   Counters counters_;
-  std::vector<std::uint8_t> buffer_;
 };
 
 }  // namespace terra::bus

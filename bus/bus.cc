@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sys/eventfd.h>
 #include <sys/select.h>
@@ -84,9 +83,9 @@ Error WhyUnusable(const std::string& text, const std::string& what) {
 }
 
 Result<std::unique_ptr<Bus>> Bus::Open(const std::string& url,
-                                       ChannelNames names) {
+                                       ChannelNames names, Use use) {
   if (const Status room = RoomForLcm(); !room) return room.error();
-  Result<std::unique_ptr<LcmLink>> link = LcmLink::Open(url);
+  Result<std::unique_ptr<LcmLink>> link = LcmLink::Open(url, use);
   if (!link) return link.error();
   std::unique_ptr<Bus> bus(new Bus(*std::move(link), std::move(names)));
   if (bus->link_->url().is_tcpq()) {
@@ -147,29 +146,36 @@ bool Bus::Publish(Channel channel, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-void Bus::OnMessage(const lcm_recv_buf_t* buffer, const char*,
+void Bus::OnMessage(std::string_view, std::span<const std::uint8_t> bytes,
                     void* subscription) noexcept {
   const auto& [bus, channel] = *static_cast<Subscription*>(subscription);
-  // A datagram without an end of its channel name shows as a huge size.
-  if (buffer->data_size > kMaxMessageBytes) {
+  if (bytes.size() > kMaxMessageBytes) {
     ++bus->counters_.oversized;
     return;
   }
   ++bus->counters_.received;
-  bus->inbox_->Push(channel, {static_cast<const std::uint8_t*>(buffer->data),
-                              buffer->data_size});
+  bus->inbox_->Push(channel, bytes);
 }
 
-// THREADING: the one thread that handles this link. It waits for liblcm's own
-// read thread (which empties the socket) and for the stop event, and only
-// copies messages into the inbox, so it never falls behind.
+void Bus::CountDatagrams() {
+  const UdpmReceiver::Counters read = link_->counters();
+  counters_.fragments = static_cast<std::int64_t>(read.fragments);
+  counters_.no_message = static_cast<std::int64_t>(read.malformed);
+  counters_.lost_in_kernel = static_cast<std::int64_t>(read.lost_in_kernel);
+}
+
+// THREADING: the one thread that handles this link. It waits for the socket
+// (where liblcm reads, for liblcm's own read thread) and for the stop event,
+// and only copies messages into the inbox, so it never falls behind.
 void Bus::Receive() {
   std::array<pollfd, 2> waited = {pollfd{link_->fd(), POLLIN, 0},
                                   pollfd{stop_fd_, POLLIN, 0}};
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
     if (waited[1].revents != 0) return;
-    if (waited[0].revents != 0 && !link_->Handle()) waited[0].fd = -1;
+    if (waited[0].revents == 0) continue;
+    if (!link_->Handle()) waited[0].fd = -1;
+    CountDatagrams();
   }
 }
 

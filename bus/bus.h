@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -37,10 +38,16 @@ class Bus : public Transport {
     std::atomic<std::int64_t> send_failed{0};
     std::atomic<std::int64_t> received{0};
     std::atomic<std::int64_t> oversized{0};
+    /// Datagrams of a udpm:// bus: pieces of larger messages, and what is no
+    /// message; what the kernel dropped before it was read.
+    std::atomic<std::int64_t> fragments{0};
+    std::atomic<std::int64_t> no_message{0};
+    std::atomic<std::int64_t> lost_in_kernel{0};
   };
 
   static Result<std::unique_ptr<Bus>> Open(const std::string& url,
-                                           ChannelNames names);
+                                           ChannelNames names,
+                                           Use use = Use::kSendAndHear);
   ~Bus() override;
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
@@ -62,10 +69,12 @@ class Bus : public Transport {
   };
 
   Bus(std::unique_ptr<LcmLink> link, ChannelNames names);
-  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
+  static void OnMessage(std::string_view channel,
+                        std::span<const std::uint8_t> bytes,
                         void* subscription) noexcept;
   Status StartReceiving();
   void Receive();
+  void CountDatagrams();
 
   std::unique_ptr<LcmLink> link_;
   std::string url_;

@@ -27,12 +27,13 @@ std::string HostName() {
 }  // namespace
 
 Heartbeat::Heartbeat(std::string name, std::string config, Outbox& out,
-                     const Bus& bus, const Inbox& inbox)
+                     const Bus& sends, const Bus& hears, const Inbox& inbox)
     : name_(std::move(name)),
       config_(std::move(config)),
       host_(HostName()),
       out_(out),
-      bus_(bus),
+      sends_(sends),
+      hears_(hears),
       inbox_(inbox) {}
 
 Time Heartbeat::Advance(const Node& node, Time now) {
@@ -56,9 +57,12 @@ void Heartbeat::SendStatus(const Node& node) {
   status.build_id = BuildId();
   status.last_error = node.last_error();
   Counters counters;
-  counters.emplace_back("sent", bus_.counters().sent);
-  counters.emplace_back("send_failed", bus_.counters().send_failed);
-  counters.emplace_back("oversized", bus_.counters().oversized);
+  counters.emplace_back("sent", sends_.counters().sent);
+  counters.emplace_back("send_failed", sends_.counters().send_failed);
+  counters.emplace_back("oversized", hears_.counters().oversized);
+  counters.emplace_back("fragments", hears_.counters().fragments);
+  counters.emplace_back("no_message", hears_.counters().no_message);
+  counters.emplace_back("lost_in_kernel", hears_.counters().lost_in_kernel);
   counters.emplace_back("queue_dropped", inbox_.dropped());
   counters.emplace_back("log_dropped", LogLinesDropped());
   node.AddCounters(counters);

@@ -12,9 +12,10 @@ namespace terra::bus {
 /// Tells bus, log and service manager how a process is.
 class Heartbeat {
  public:
-  /// `config` is what --print-config prints.
-  Heartbeat(std::string name, std::string config, Outbox& out, const Bus& bus,
-            const Inbox& inbox);
+  /// `config` is what --print-config prints; `out` sends on the bus `sends`,
+  /// and the process hears the bus `hears`.
+  Heartbeat(std::string name, std::string config, Outbox& out, const Bus& sends,
+            const Bus& hears, const Inbox& inbox);
 
   /// Sends STATUS where it is due: when a second has passed since the last, and
   /// when the state changed (at most ten a second, however it flutters).
@@ -33,7 +34,8 @@ class Heartbeat {
   std::string config_;
   std::string host_;
   Outbox& out_;
-  const Bus& bus_;
+  const Bus& sends_;
+  const Bus& hears_;
   const Inbox& inbox_;
   Periodic due_{kSlowPeriod};
   Time earliest_ = Time::min();  ///< Of the next STATUS.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <utility>
 
@@ -29,6 +30,7 @@ constexpr std::int64_t kRetryMs = 500;
 constexpr int kAnswerMs = 500;
 // How long a publish waits for a hub that takes nothing.
 constexpr int kSendPatienceMs = 100;
+constexpr std::string_view kEveryChannel = ".*";
 // What a hub says first: its magic number and a version.
 constexpr std::size_t kGreetingBytes = 8;
 
@@ -97,6 +99,40 @@ void SetPatience(int fd, int option, int milliseconds) {
   setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
 }
 
+// What liblcm received goes to whoever subscribed.
+template <typename Subscription>
+void OnLcmMessage(const lcm_recv_buf_t* buffer, const char* channel,
+                  void* subscription) noexcept {
+  const auto& one = *static_cast<const Subscription*>(subscription);
+  one.handler(
+      channel,
+      {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size},
+      one.user);
+}
+
+// Sends what liblcm would send itself, until it comes back.
+bool ComesBack(lcm_t* out, UdpmReceiver& receiver) {
+  constexpr int kTries = 10;
+  constexpr auto kWait = std::chrono::milliseconds(100);
+  constexpr char kText[] = "lcm self test";
+  bool heard = false;
+  for (int i = 0; i < kTries && !heard; ++i) {
+    lcm_publish(out, kSelfTestChannel, kText, sizeof kText);
+    const auto until = std::chrono::steady_clock::now() + kWait;
+    while (!heard) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+          until - std::chrono::steady_clock::now());
+      if (left.count() <= 0) break;
+      if (!IsReadable(receiver.fd(), static_cast<int>(left.count()))) break;
+      receiver.Drain(LcmLink::kMessagesPerHandle,
+                     [&heard](const LcmDatagram& datagram, SenderAddress) {
+                       heard = heard || datagram.channel == kSelfTestChannel;
+                     });
+    }
+  }
+  return heard;
+}
+
 bool EndsNow(int fd) {
   char byte = 0;
   const ssize_t got = recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
@@ -112,10 +148,11 @@ void Add(int epoll_fd, int fd) {
 
 }  // namespace
 
-Result<std::unique_ptr<LcmLink>> LcmLink::Open(const std::string& url) {
+Result<std::unique_ptr<LcmLink>> LcmLink::Open(const std::string& url,
+                                               Use use) {
   Result<LcmUrl> parsed = ParseLcmUrl(url);
   if (!parsed) return parsed.error();
-  std::unique_ptr<LcmLink> link(new LcmLink(*std::move(parsed)));
+  std::unique_ptr<LcmLink> link(new LcmLink(*std::move(parsed), use));
   if (link->url_.is_tcpq()) {
     const Status opened = link->OpenTcpq();
     if (!opened) return opened.error();
@@ -147,13 +184,28 @@ LcmLink::~LcmLink() {
 }
 
 int LcmLink::fd() const {
-  return url_.is_tcpq() ? epoll_fd_ : lcm_get_fileno(in_);
+  if (url_.is_tcpq()) return epoll_fd_;
+  if (url_.is_udpm()) return receiver_ ? receiver_->fd() : -1;
+  return lcm_get_fileno(in_);
 }
 
-bool LcmLink::SubscribeTo(const Subscription& subscription) {
+// liblcm opens its own receiving socket with its first subscription; it gets
+// none.
+Status LcmLink::OpenReceiver() {
+  Result<UdpmReceiver> opened = UdpmReceiver::Open(url_.text());
+  if (!opened) return WhyUnusable(url_.text(), opened.error().message);
+  if (use_ == Use::kSendAndHear && !ComesBack(out_, *opened)) {
+    return WhyUnusable(url_.text(),
+                       "what is sent does not come back (a firewall?)");
+  }
+  receiver_.emplace(*std::move(opened));
+  return Done{};
+}
+
+bool LcmLink::SubscribeTo(Subscription& subscription) {
   lcm_subscription_t* subscribed =
-      lcm_subscribe(in_, subscription.channel.c_str(), subscription.handler,
-                    subscription.user);
+      lcm_subscribe(in_, subscription.channel.c_str(),
+                    &OnLcmMessage<Subscription>, &subscription);
   if (subscribed == nullptr) return false;
   lcm_subscription_set_queue_capacity(subscribed, subscription.queue_capacity);
   return true;
@@ -167,8 +219,7 @@ Status LcmLink::Subscribe(const std::string& channel, Handler handler,
     if (in_ != nullptr) SubscribeTo(subscriptions_.back());
     return Done{};
   }
-  // The first subscription opens the receiving socket and sends itself a test
-  // message; where that fails there is no descriptor to wait on.
+  if (url_.is_udpm()) return receiver_ ? Status(Done{}) : OpenReceiver();
   if (!SubscribeTo(subscriptions_.back()) || lcm_get_fileno(in_) < 0) {
     return WhyUnusable(url_.text(),
                        "what is sent does not come back (a firewall?)");
@@ -178,6 +229,7 @@ Status LcmLink::Subscribe(const std::string& channel, Handler handler,
 
 bool LcmLink::Publish(const std::string& channel,
                       std::span<const std::uint8_t> bytes) {
+  if (use_ == Use::kHear) return false;
   const auto send = [&] {
     return lcm_publish(out_, channel.c_str(), bytes.data(),
                        static_cast<unsigned>(bytes.size())) == 0;
@@ -196,9 +248,30 @@ bool LcmLink::Handle() {
     HandleTcpq();
     return true;
   }
+  if (url_.is_udpm()) {
+    HandleUdpm();
+    return true;
+  }
   const bool at_end = lcm_handle(in_) != 0 && url_.provider == "file";
   if (at_end) LogInfo(url_.text() + " was played to its end");
   return !at_end;
+}
+
+void LcmLink::HandleUdpm() {
+  const std::lock_guard lock(mutex_);
+  receiver_->Drain(
+      kMessagesPerHandle, [this](const LcmDatagram& datagram, SenderAddress) {
+        for (const Subscription& one : subscriptions_) {
+          if (one.channel == kEveryChannel || one.channel == datagram.channel) {
+            one.handler(datagram.channel, datagram.payload, one.user);
+          }
+        }
+      });
+}
+
+UdpmReceiver::Counters LcmLink::counters() const {
+  const std::lock_guard lock(mutex_);
+  return receiver_ ? receiver_->counters() : UdpmReceiver::Counters{};
 }
 
 // The messages of in_ are handled outside the lock: nobody else reads there,
@@ -268,7 +341,7 @@ void LcmLink::Connect() {
   }
   SetPatience(lcm_get_fileno(out_), SO_SNDTIMEO, kSendPatienceMs);
   SetPatience(lcm_get_fileno(in_), SO_RCVTIMEO, kAnswerMs);
-  for (const Subscription& each : subscriptions_) SubscribeTo(each);
+  for (Subscription& each : subscriptions_) SubscribeTo(each);
   Add(epoll_fd_, lcm_get_fileno(in_));
   Add(epoll_fd_, lcm_get_fileno(out_));
   if (away_) LogInfo("the hub at " + url_.text() + " is back");

@@ -1,21 +1,35 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
-#include <vector>
+#include <string_view>
+#include <utility>
 
 #include "bus/lcm_url.h"
+#include "bus/udpm_receiver.h"
 #include "terrain/result.h"
 
 struct _lcm_t;
-struct _lcm_recv_buf_t;
 
 namespace terra::bus {
 
-/// One connection to an LCM bus through liblcm.
+/// What everybody who opens a udpm:// bus sends once, to see whether it comes
+/// back: liblcm, and LcmLink.
+inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
+
+/// What a connection is for. One that only hears sends nothing at all, and so
+/// cannot see whether what is sent would come back.
+enum class Use { kSendAndHear, kHear };
+
+/// One connection to an LCM bus. liblcm sends, and reads memq://, file:// and
+/// tcpq://; udpm:// is read by a UdpmReceiver, since one packet can end a
+/// process that reads it with liblcm.
 ///
 /// The hub of a tcpq:// bus may be away, at the start or later. Then nothing is
 /// sent or heard, which is said once; the hub is looked for twice a second, and
@@ -28,34 +42,42 @@ namespace terra::bus {
 ///          publishes.
 class LcmLink {
  public:
-  using Handler = void (*)(const _lcm_recv_buf_t* buffer, const char* channel,
-                           void* user);
+  /// The views are valid during the call only.
+  using Handler = void (*)(std::string_view channel,
+                           std::span<const std::uint8_t> bytes, void* user);
+  /// One call of Handle takes no more messages.
+  static constexpr std::size_t kMessagesPerHandle = 64;
 
   /// Errors: a URL that is none, or that liblcm refuses.
-  static Result<std::unique_ptr<LcmLink>> Open(const std::string& url);
+  static Result<std::unique_ptr<LcmLink>> Open(const std::string& url,
+                                               Use use = Use::kSendAndHear);
   ~LcmLink();
   LcmLink(const LcmLink&) = delete;
   LcmLink& operator=(const LcmLink&) = delete;
 
   const LcmUrl& url() const { return url_; }
 
-  /// Receives the channels that match a regular expression. `handler` is called
-  /// from Handle, with `user`. liblcm holds at most `queue_capacity` messages.
-  /// Errors: a bus that does not carry what is sent.
+  /// Receives one channel, or every one: ".*". `handler` is called from Handle,
+  /// with `user`. Where liblcm reads it holds at most `queue_capacity`
+  /// messages. Errors: a bus that does not carry what is sent.
   Status Subscribe(const std::string& channel, Handler handler, void* user,
                    int queue_capacity);
 
-  /// Returns false when the message could not be sent. A hub that takes nothing
+  /// Returns false when the message could not be sent; with Use::kHear always.
+  /// A hub that takes nothing
   /// delays this by kSendPatience, once.
   bool Publish(const std::string& channel, std::span<const std::uint8_t> bytes);
 
   /// Readable when there is something for Handle. The same for the life of the
   /// link, once there is a subscription or the bus is a tcpq:// one.
   int fd() const;
-  /// Takes one message, or sees to a hub that went away or came back. Returns
+  /// Takes some messages, or sees to a hub that went away or came back. Returns
   /// false when nothing will come any more, which is said: a file:// bus was
   /// played to its end. (Its descriptor stays readable for ever.)
   bool Handle();
+
+  /// Of a udpm:// bus; elsewhere all are 0. For the thread of Handle.
+  UdpmReceiver::Counters counters() const;
 
  private:
   struct Subscription {
@@ -65,9 +87,11 @@ class LcmLink {
     int queue_capacity;
   };
 
-  explicit LcmLink(LcmUrl url) : url_(std::move(url)) {}
+  LcmLink(LcmUrl url, Use use) : url_(std::move(url)), use_(use) {}
   Status OpenTcpq();
-  bool SubscribeTo(const Subscription& subscription);
+  Status OpenReceiver();
+  bool SubscribeTo(Subscription& subscription);
+  void HandleUdpm();
   void HandleTcpq();
   void Connect();
   void Drop();
@@ -76,8 +100,10 @@ class LcmLink {
   void LookAgainIn(std::int64_t milliseconds) const;
 
   const LcmUrl url_;
-  mutable std::mutex mutex_;  // For all below.
-  std::vector<Subscription> subscriptions_;
+  const Use use_;
+  mutable std::mutex mutex_;                // For all below.
+  std::deque<Subscription> subscriptions_;  // liblcm is given their addresses.
+  std::optional<UdpmReceiver> receiver_;  // udpm: from the first subscription.
   _lcm_t* in_ = nullptr;
   // A tcpq:// bus is sent to over a connection of its own, since liblcm closes
   // one that fails, whoever else uses it. Else the same as in_.

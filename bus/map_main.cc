@@ -1,8 +1,9 @@
 // terra-map: the map server.
 // Reads a map file, again when it or a file that belongs to it changes; listens
-// to MAP_REQUEST; publishes MAP_HEADER, MAP_TILE, STATUS, CONFIG; exits when
-// asked to (SIGINT, SIGTERM), or when the map cannot be read at start or there
-// is no bus.
+// to MAP_REQUEST, on the advice bus too; publishes MAP_HEADER, MAP_TILE,
+// STATUS, CONFIG; exits when asked to (SIGINT, SIGTERM), or when the map cannot
+// be read at start or there is no bus.
+#include <chrono>
 #include <map>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +11,7 @@
 #include "bus/map_file_options.h"
 #include "bus/map_node.h"
 #include "bus/process.h"
+#include "bus/subscribers.h"
 
 int main(int argc, char** argv) {
   std::string path;
@@ -44,6 +46,12 @@ int main(int argc, char** argv) {
         std::make_unique<terra::bus::MapNode>(path, options, context.out);
     const terra::Status loaded = node->Load();
     if (!loaded) return loaded.error();
+    // Here, since nobody waits for the map server.
+    context.loop.Every(
+        std::chrono::seconds(10),
+        [map = node.get(), url = context.bus.lcm_url](terra::bus::Time) {
+          map->NoteSubscribers(terra::bus::CountSubscribers(url));
+        });
     return std::unique_ptr<terra::bus::Node>(std::move(node));
   };
   return terra::bus::RunProcess(spec, argc, argv);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bus/log.h"
+#include "bus/subscribers.h"
 
 namespace terra::bus {
 
@@ -58,9 +59,14 @@ std::string MapNode::state() const {
          std::to_string(sender_.header().height) + " cells";
 }
 
+std::string MapNode::last_error() const {
+  return last_error_.empty() ? SubscribersWarning(subscribers_) : last_error_;
+}
+
 void MapNode::AddCounters(Counters& counters) const {
   Node::AddCounters(counters);
   counters.emplace_back("loads", loads_);
+  counters.emplace_back("subscribers", subscribers_);
   counters.emplace_back("tiles_sent", sender_.tiles_sent());
 }
 

@@ -22,9 +22,13 @@ class MapNode : public Node {
   /// Reads the file. To be called once, before the node runs.
   Status Load();
 
+  /// For the heartbeat: how many sockets hear the deployed bus. From
+  /// kManySubscribers on it warns.
+  void NoteSubscribers(std::int64_t sockets) { subscribers_ = sockets; }
+
   Time Advance(Time now) override;
   std::string state() const override;
-  std::string last_error() const override { return last_error_; }
+  std::string last_error() const override;
   void AddCounters(Counters& counters) const override;
 
  private:
@@ -40,6 +44,7 @@ class MapNode : public Node {
   std::string last_error_;
   Periodic look_{std::chrono::milliseconds(FileWatch::kPeriodMs)};
   std::int64_t loads_ = 0;
+  std::int64_t subscribers_ = 0;
 };
 
 }  // namespace terra::bus

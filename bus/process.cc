@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bus/advisor_channels.h"
 #include "bus/build_id.h"
 #include "bus/decimal_options.h"
 #include "bus/heartbeat.h"
@@ -41,10 +42,19 @@ int Serve(const ProcessSpec& spec, const std::string& name,
     LogWarning(notice);
   }
   Inbox inbox;
-  Result<std::unique_ptr<Bus>> opened = Bus::Open(options.lcm_url, *channels);
+  const bool apart = spec.is_advisor && !options.OneBus();
+  Result<std::unique_ptr<Bus>> opened = Bus::Open(
+      options.lcm_url, *channels, apart ? Use::kHear : Use::kSendAndHear);
   if (!opened) return Fail(opened.error().message);
   const std::unique_ptr<Bus> bus = *std::move(opened);
-  Outbox out(*bus, RandomId());
+  std::unique_ptr<Bus> advice_bus;
+  if (apart) {
+    opened = Bus::Open(options.advice_url, *channels);
+    if (!opened) return Fail(opened.error().message);
+    advice_bus = *std::move(opened);
+  }
+  Bus& sends = apart ? *advice_bus : *bus;
+  Outbox out(sends, RandomId());
   EventLoop loop(inbox, stop);
   ProcessContext context{options, *channels, name, out, inbox, loop};
   Result<std::unique_ptr<Node>> made = spec.make_node(context);
@@ -55,7 +65,9 @@ int Serve(const ProcessSpec& spec, const std::string& name,
     const Status listening = bus->Listen(node->channels(), inbox);
     if (!listening) return Fail(listening.error().message);
   }
-  Heartbeat heartbeat(name, config, out, *bus, inbox);
+  const Status advisors = ListenToAdvisors(options, *channels, *node, loop);
+  if (!advisors) return Fail(advisors.error().message);
+  Heartbeat heartbeat(name, config, out, sends, *bus, inbox);
   loop.AfterTurn([&](Time now) {
     return heartbeat.Advance(*node, now);
   });

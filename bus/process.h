@@ -40,7 +40,7 @@ struct ProcessContext {
   const BusOptions& bus;
   const ChannelNames& channels;
   std::string name;  ///< --name
-  Outbox& out;       ///< The deployed bus.
+  Outbox& out;       ///< The deployed bus; for advisors the advice bus.
   Inbox& inbox;      ///< For Wake, from the node's own threads.
   EventLoop& loop;   ///< To watch descriptors of the node's own.
 };
@@ -50,6 +50,9 @@ struct ProcessSpec {
   std::string program;      ///< "terra-map"
   std::string name;         ///< Default of --name: "map".
   std::string description;  ///< What it listens to, publishes, when it exits.
+  /// An advisor hears the deployed bus and sends nothing there: all that it
+  /// says goes over the advice bus.
+  bool is_advisor = false;
   std::function<void(CLI::App&)> add_options;
   /// Called once the options are read and the deployed bus is open.
   std::function<Result<std::unique_ptr<Node>>(ProcessContext&)> make_node;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace terra::bus {
 
@@ -11,6 +12,13 @@ using Time = Clock::time_point;
 using Duration = Clock::duration;
 
 inline constexpr Time kNever = Time::max();
+
+/// Returns microseconds of the monotonic clock.
+inline std::int64_t MonotonicMicroseconds(Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             time.time_since_epoch())
+      .count();
+}
 
 /// State on the bus is repeated this often while it is current; advice and
 /// heartbeats every second.

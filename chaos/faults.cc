@@ -87,8 +87,8 @@ constexpr std::array kFaults = {
     Fault{"half-fragments", "fragments that are missing, doubled, in disorder",
           kMustNotPass, true, HalfFragments},
     Fault{"offset-wrap",
-          "the fragment that crashes liblcm subscribers: in 1.3.1 those of "
-          "its channel (ADVICE), in 1.5.2 all, terra-chaos too",
+          "the fragment that crashes whoever reads with liblcm: in 1.3.1 "
+          "subscribers of its channel (ADVICE), in 1.5.2 all",
           kMustNotPass, false, OffsetWrap},
     Fault{"slow-drip", "a message of 65,535 fragments that never ends",
           kMustNotPass, false, SlowDrip},

@@ -59,8 +59,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
         ->group("Faults (with several, one of them at a time, by the seed)");
   }
   app.add_flag("--all", arguments.all,
-               "every fault but offset-wrap, which ends processes by liblcm's "
-               "own fault, in 1.3.1 as in 1.5.2");
+               "every fault but offset-wrap, which ends other programs on the "
+               "bus that read with liblcm (1.3.1 as 1.5.2)");
   app.add_flag("--flood", arguments.chaos.flood,
                "as fast as the machine can, instead of --rate");
   app.add_flag("--many-senders", arguments.many_senders,
@@ -117,9 +117,7 @@ Result<std::unique_ptr<terra::bus::Node>> MakeNode(
   AdviceReceiver& receiver = *connections.overheard;
   context.loop.Watch(
       receiver.fd(), [&receiver, listener](terra::bus::Time now) {
-        const auto us = std::chrono::duration_cast<std::chrono::microseconds>(
-            now.time_since_epoch());
-        receiver.Drain(us.count(), 64,
+        receiver.Drain(terra::bus::MonotonicMicroseconds(now), 64,
                        [listener](const terra::bus::LcmDatagram& datagram,
                                   terra::bus::SenderAddress) {
                          listener->Overhear(datagram.payload);
@@ -136,6 +134,7 @@ int main(int argc, char** argv) {
   terra::bus::ProcessSpec spec;
   spec.program = "terra-chaos";
   spec.name = "chaos";
+  spec.is_advisor = true;
   spec.description =
       "A misbehaving advisor: attacks a running set the way a broken or "
       "hostile advisor would, says what the gate made of it, and exits with 1 "

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "bus/advisor_channels.h"
 #include "bus/bus.h"
 #include "bus/event_loop.h"
 #include "bus/log.h"
@@ -59,6 +60,9 @@ int Watch(MonitorArguments& arguments) {
   const Status listening = bus->Listen(node.channels(), inbox);
   if (!listening) return Fail(listening.error());
   bus::EventLoop loop(inbox, stop);
+  const Status advisors =
+      bus::ListenToAdvisors(arguments.bus, *channels, node, loop);
+  if (!advisors) return Fail(advisors.error());
   loop.Run(node);
   return kDone;
 }

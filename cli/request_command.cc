@@ -7,11 +7,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bus/advisor_channels.h"
 #include "bus/bus.h"
 #include "bus/codec.h"
 #include "bus/event_loop.h"
-#include "bus/map_file_options.h"
 #include "bus/log.h"
+#include "bus/map_file_options.h"
 #include "bus/number_range.h"
 #include "bus/process.h"
 #include "cli/commands.h"
@@ -114,6 +115,10 @@ int Ask(RequestArguments& arguments) {
   const Status listening = bus->Listen(node.channels(), inbox);
   if (!listening) return FailRequest(listening.error().message);
   bus::EventLoop loop(inbox, stop);
+  // A route comes without advisors too.
+  const Status advisors =
+      bus::ListenToAdvisors(arguments.bus, *channels, node, loop);
+  if (!advisors) bus::LogWarning(advisors.error().message);
   loop.Run(node);
 
   if (arguments.json) {

@@ -1,10 +1,11 @@
 # What another project can link after `cmake --install`: the message types, the
-# ground truth and the verifier, as TerraAdvisor::terra_msg, ::terra_terrain and
-# ::terra_verifier of find_package(TerraAdvisor).
+# ground truth, the verifier and the receiver of a udpm:// bus, as
+# TerraAdvisor::terra_msg, ::terra_terrain, ::terra_verifier and ::terra_udpm of
+# find_package(TerraAdvisor).
 include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/TerraAdvisor")
 
-install(TARGETS terra_msg terra_terrain terra_verifier
+install(TARGETS terra_msg terra_terrain terra_verifier terra_udpm
         EXPORT TerraAdvisorTargets)
 install(EXPORT TerraAdvisorTargets NAMESPACE TerraAdvisor::
         DESTINATION "${package_dir}")
@@ -14,6 +15,10 @@ foreach(folder IN ITEMS terrain verifier)
   install(FILES ${headers}
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/terra_advisor/${folder}")
 endforeach()
+
+install(FILES "${PROJECT_SOURCE_DIR}/bus/lcm_url.h"
+              "${PROJECT_SOURCE_DIR}/bus/udpm_receiver.h"
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/terra_advisor/bus")
 
 get_filename_component(LCM_PREFIX "${LCM_INCLUDE_DIR}" DIRECTORY)
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/TerraAdvisorConfig.cmake.in"
@@ -39,7 +44,7 @@ foreach(name IN ITEMS terra terra-map terra-planner terra-graph-planner
 endforeach()
 add_custom_target(terra_stack)
 add_dependencies(terra_stack terra_msg_headers terra_msg_python terra_terrain
-                 terra_verifier)
+                 terra_verifier terra_udpm)
 if(TERRA_BUILD_JAVA)
   add_dependencies(terra_stack terra_msg_jar)
 endif()

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <string>
+#include <vector>
 
-#include <lcm/lcm.h>
 #include <sys/eventfd.h>
 
+#include "bus/advisor_channels.h"
 #include "bus/bus.h"
 #include "bus/envelope.h"
 #include "bus/lcm_url.h"
@@ -25,8 +26,6 @@ constexpr int kLcmQueueCapacity = 20'000;
 constexpr int kSilenceMs = 20;  // At the end.
 constexpr int kAdviceWaitsMs = 2;
 constexpr std::size_t kDatagramsPerTurn = 4'096;
-// liblcm sends itself this once, to see whether multicast works.
-constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
 
 // liblcm complains loudly about a size that the kernel does not give.
 std::int64_t LargestReceiveBuffer() {
@@ -35,10 +34,8 @@ std::int64_t LargestReceiveBuffer() {
   return std::min(limit, kReceiveBuffer);
 }
 
-std::int64_t MonotonicMicroseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+void Copy(std::uint64_t from, std::atomic<std::int64_t>& to) {
+  to = static_cast<std::int64_t>(from);
 }
 
 }  // namespace
@@ -55,7 +52,7 @@ std::string WithReceiveBuffer(const std::string& url, std::int64_t bytes) {
 }
 
 Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
-                                             const std::string& advice_channel,
+                                             const bus::ChannelNames& names,
                                              EventQueue& queue) {
   Result<std::unique_ptr<bus::LcmLink>> link = bus::LcmLink::Open(
       WithReceiveBuffer(urls.deployed, LargestReceiveBuffer()));
@@ -71,7 +68,12 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
   const Result<bus::LcmUrl> advice = bus::ParseLcmUrl(urls.advice);
   if (!advice) return advice.error();
   if (advice->is_udpm() && !bus::SameBus(*advice, tap->link_->url())) {
-    auto opened = bus::AdviceReceiver::Open(urls.advice, advice_channel);
+    tap->advice_channel_ = names.name(bus::Channel::kAdvice);
+    std::vector<std::string> channels = {tap->advice_channel_};
+    for (const bus::Channel channel : bus::kAdvisorChannels) {
+      channels.push_back(names.name(channel));
+    }
+    auto opened = bus::AdviceReceiver::Open(urls.advice, channels);
     if (!opened) return opened.error();
     tap->advice_.emplace(*std::move(opened));
   }
@@ -94,27 +96,24 @@ BusTap::~BusTap() {
   if (stop_fd_ >= 0) close(stop_fd_);
 }
 
-void BusTap::OnMessage(const lcm_recv_buf_t* buffer, const char* channel,
+void BusTap::OnMessage(std::string_view channel,
+                       std::span<const std::uint8_t> bytes,
                        void* tap) noexcept {
   auto& self = *static_cast<BusTap*>(tap);
-  if (channel == kSelfTest) return;
-  // A datagram without an end of its channel name shows as a huge size; a name
-  // that is not one word would be taken for damage in the log.
-  const std::string_view name(channel);
-  if (buffer->data_size > kMaxLogData || !IsLogChannel(name)) {
+  if (channel == bus::kSelfTestChannel) return;
+  // A name that is not one word would be taken for damage in the log.
+  if (bytes.size() > kMaxLogData || !IsLogChannel(channel)) {
     ++self.counters_.refused;
     return;
   }
   ++self.counters_.heard;
-  self.queue_.Push(
-      bus::UnixMicroseconds(), name,
-      {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+  self.queue_.Push(bus::UnixMicroseconds(), channel, bytes);
 }
 
 // THREADING: the one thread that handles this link and the advice socket.
 // It copies messages into the queue, stamped with the time, and never writes.
 // Advice waits a moment in its socket, so that the baseline that it answers,
-// which comes through one more thread, stands before it in the log.
+// which may come later over the other socket, stands before it in the log.
 void BusTap::Listen() {
   std::array<pollfd, 3> waited = {
       pollfd{stop_fd_, POLLIN, 0}, pollfd{link_->fd(), POLLIN, 0},
@@ -130,27 +129,36 @@ void BusTap::Listen() {
   if (advice_) DrainAdvice();
 }
 
-// Hears what is under way in buffers and liblcm's own thread, until the bus was
-// silent for so long. One that never falls silent is not waited for.
+// Hears what is under way, until the bus was silent for so long. One that never
+// falls silent is not waited for.
 void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
-  for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0; ++i) {
+  const int messages = link_->url().is_udpm()
+                           ? static_cast<int>(bus::LcmLink::kMessagesPerHandle)
+                           : 1;
+  for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0;
+       i += messages) {
     if (!link_->Handle()) lcm.fd = -1;
   }
+  const bus::UdpmReceiver::Counters read = link_->counters();
+  Copy(read.fragments, counters_.fragments);
+  Copy(read.malformed, counters_.no_message);
+  Copy(read.lost_in_kernel, counters_.lost_in_kernel);
 }
 
 void BusTap::DrainAdvice() {
-  advice_->Drain(MonotonicMicroseconds(), kDatagramsPerTurn,
+  advice_->Drain(bus::MonotonicMicroseconds(bus::Clock::now()),
+                 kDatagramsPerTurn,
                  [this](const bus::LcmDatagram& datagram, bus::SenderAddress) {
                    ++counters_.heard;
                    queue_.Push(bus::UnixMicroseconds(), datagram.channel,
                                datagram.payload);
                  });
-  const auto copy = [](std::atomic<std::int64_t>& to, std::uint64_t from) {
-    to = static_cast<std::int64_t>(from);
-  };
-  copy(counters_.advice_over_limit, advice_->counters().over_limit);
-  copy(counters_.advice_malformed, advice_->counters().malformed);
-  copy(counters_.advice_lost_in_kernel, advice_->counters().lost_in_kernel);
+  const bus::AdviceReceiver::Counters& read = advice_->counters();
+  const std::uint64_t of_advice = advice_->over_limit(advice_channel_);
+  Copy(of_advice, counters_.advice_over_limit);
+  Copy(read.over_limit - of_advice, counters_.advisors_over_limit);
+  Copy(read.malformed, counters_.advice_malformed);
+  Copy(read.lost_in_kernel, counters_.advice_lost_in_kernel);
 }
 
 }  // namespace terra::logger

@@ -4,24 +4,27 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "bus/advice_receiver.h"
+#include "bus/channels.h"
 #include "bus/lcm_link.h"
 #include "logger/event_queue.h"
 #include "terrain/result.h"
 
 struct pollfd;
-struct _lcm_recv_buf_t;
 
 namespace terra::logger {
 
-/// Hears every channel of the deployed bus, the project's or not, and ADVICE
-/// of the advice bus through the bounded receiver.
+/// Hears every channel of the deployed bus, the project's or not, and on the
+/// advice bus what advisors say, each channel within its limits.
 ///
-/// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), room
-///         for a burst of 20,000 messages behind it, then the EventQueue.
+/// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), then
+/// the
+///         EventQueue.
 /// Threads: one of its own fills the queue and does nothing else; the counts
 ///          may be read from any.
 class BusTap {
@@ -33,7 +36,12 @@ class BusTap {
   struct Counters {
     std::atomic<std::int64_t> heard{0};
     std::atomic<std::int64_t> refused{0};
+    /// Datagrams of the deployed bus, as in bus::UdpmReceiver::Counters.
+    std::atomic<std::int64_t> fragments{0};
+    std::atomic<std::int64_t> no_message{0};
+    std::atomic<std::int64_t> lost_in_kernel{0};
     std::atomic<std::int64_t> advice_over_limit{0};
+    std::atomic<std::int64_t> advisors_over_limit{0};  ///< Not ADVICE.
     std::atomic<std::int64_t> advice_malformed{0};
     std::atomic<std::int64_t> advice_lost_in_kernel{0};
   };
@@ -41,7 +49,7 @@ class BusTap {
   /// The queue must outlive the tap.
   /// Errors: a bus that cannot be heard, with what to do about it.
   static Result<std::unique_ptr<BusTap>> Open(const Urls& urls,
-                                              const std::string& advice_channel,
+                                              const bus::ChannelNames& names,
                                               EventQueue& queue);
   /// Hears what was sent before, then ends.
   ~BusTap();
@@ -52,7 +60,8 @@ class BusTap {
 
  private:
   BusTap(EventQueue& queue, std::unique_ptr<bus::LcmLink> link, int stop_fd);
-  static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel,
+  static void OnMessage(std::string_view channel,
+                        std::span<const std::uint8_t> bytes,
                         void* tap) noexcept;
   void Listen();
   void HearDeployedBus(pollfd& lcm, int silence_ms);
@@ -62,6 +71,7 @@ class BusTap {
   std::unique_ptr<bus::LcmLink> link_;
   int stop_fd_;
   std::optional<bus::AdviceReceiver> advice_;
+  std::string advice_channel_;
   Counters counters_;
   std::thread thread_;
 };

@@ -17,7 +17,7 @@ LoggerNode::LoggerNode(Recorder recorder, bus::ChannelNames channels,
       map_(out) {}
 
 Status LoggerNode::Listen(const BusTap::Urls& urls) {
-  auto tap = BusTap::Open(urls, channels_.name(bus::Channel::kAdvice), queue_);
+  auto tap = BusTap::Open(urls, channels_, queue_);
   if (!tap) return tap.error();
   tap_ = *std::move(tap);
   return Done{};
@@ -105,7 +105,11 @@ void LoggerNode::AddCounters(bus::Counters& counters) const {
   const BusTap::Counters& heard = tap_->counters();
   counters.emplace_back("heard", heard.heard);
   counters.emplace_back("refused", heard.refused);
+  counters.emplace_back("tap_fragments", heard.fragments);
+  counters.emplace_back("tap_no_message", heard.no_message);
+  counters.emplace_back("tap_lost_in_kernel", heard.lost_in_kernel);
   counters.emplace_back("advice_over_limit", heard.advice_over_limit);
+  counters.emplace_back("advisors_over_limit", heard.advisors_over_limit);
   counters.emplace_back("advice_malformed", heard.advice_malformed);
   counters.emplace_back("advice_lost_in_kernel", heard.advice_lost_in_kernel);
 }

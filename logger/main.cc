@@ -1,5 +1,5 @@
 // terra-logger: the flight recorder.
-// Listens to everything on the deployed bus and to ADVICE on the advice bus;
+// Listens to everything on the deployed bus and to advisors on the advice bus;
 // publishes MAP_REQUEST, STATUS, CONFIG; exits when asked to (SIGINT, SIGTERM),
 // with 1 when anything was lost, or when it has no bus or no log folder.
 #include <unistd.h>

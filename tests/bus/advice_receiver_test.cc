@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -192,6 +193,49 @@ TEST(AdviceReceiver, TakesItsChannelAndCountsTheRest) {
     EXPECT_EQ(sizes.front(), 60'000U);
     EXPECT_EQ(sizes.back(), 5U);
   }
+}
+
+// What one channel is flooded with is no other channel's loss.
+TEST(AdviceReceiver, EachChannelHasItsOwnLimit) {
+  auto receiver =
+      AdviceReceiver::Open("udpm://239.255.76.67:17704?ttl=0",
+                           std::vector<std::string>{"ADVICE", "STATUS"});
+  ASSERT_TRUE(receiver) << receiver.error().message;
+  const Sender sender(17704);
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(sender.Send(Datagram("STATUS", 1)));
+  for (int i = 0; i < 25; ++i) ASSERT_TRUE(sender.Send(Datagram("ADVICE", 1)));
+  std::map<std::string, int> heard;
+  DrainUntil(*receiver, 75, [&heard](const LcmDatagram& one, SenderAddress) {
+    ++heard[std::string(one.channel)];
+  });
+  EXPECT_EQ(heard["STATUS"], 20);
+  EXPECT_EQ(heard["ADVICE"], 20);
+  EXPECT_EQ(receiver->over_limit("STATUS"), 30U);
+  EXPECT_EQ(receiver->over_limit("ADVICE"), 5U);
+  EXPECT_EQ(receiver->over_limit("POSE"), 0U);
+}
+
+TEST(UdpmReceiver, RefusesAndCountsFragmentsOfEverySize) {
+  auto receiver = UdpmReceiver::Open("udpm://239.255.76.67:17705?ttl=0");
+  ASSERT_TRUE(receiver) << receiver.error().message;
+  const Sender sender(17705);
+  const std::uint32_t fragment = 0x4c433033;
+  ASSERT_TRUE(sender.Send(Datagram("", 0, fragment)));
+  ASSERT_TRUE(sender.Send(Datagram("A", 500, fragment)));
+  ASSERT_TRUE(sender.Send(Datagram("A", 65'000, fragment)));
+  ASSERT_TRUE(sender.Send(Datagram("A", 65'000)));
+  ASSERT_TRUE(sender.Send(Datagram("A", 1)));
+  int heard = 0;
+  while (receiver->counters().received < 5) {
+    pollfd ready{receiver->fd(), POLLIN, 0};
+    ASSERT_EQ(poll(&ready, 1, 5'000), 1) << "nothing came for 5 s";
+    receiver->Drain(100, [&heard](const LcmDatagram&, SenderAddress) {
+      ++heard;
+    });
+  }
+  EXPECT_EQ(receiver->counters().fragments, 3U);
+  EXPECT_EQ(receiver->counters().malformed, 1U);
+  EXPECT_EQ(heard, 1);
 }
 
 TEST(AdviceReceiver, ReadsNoMoreThanAskedAtATime) {

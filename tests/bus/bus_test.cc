@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/resource.h>
@@ -98,6 +100,79 @@ INSTANTIATE_TEST_SUITE_P(Providers, BusTest, ::testing::ValuesIn(kProviders),
                          [](const auto& tested) {
                            return tested.param.substr(0, 4);
                          });
+
+void SendRaw(int port, const std::vector<std::uint8_t>& datagram) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const unsigned char ttl = 0;
+  setsockopt(fd, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  inet_pton(AF_INET, "239.255.76.67", &to.sin_addr);
+  EXPECT_EQ(sendto(fd, datagram.data(), datagram.size(), 0,
+                   reinterpret_cast<const sockaddr*>(&to), sizeof to),
+            static_cast<ssize_t>(datagram.size()));
+  close(fd);
+}
+
+// A fragment of a message: number `index` of two, at `offset`.
+std::vector<std::uint8_t> Fragment(std::uint16_t index, std::uint32_t offset) {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [&bytes](std::uint32_t value, int num_bytes) {
+    for (int i = num_bytes - 1; i >= 0; --i) {
+      bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+    }
+  };
+  append(0x4c433033, 4);  // "LC03"
+  append(77, 4);          // The message's number.
+  append(1'000, 4);       // Its size.
+  append(offset, 4);
+  append(index, 2);
+  append(2, 2);
+  const std::string name = index == 0 ? std::string("TERRA_POSE") + '\0' : "";
+  bytes.insert(bytes.end(), name.begin(), name.end());
+  bytes.resize(bytes.size() + 400, 0xab);
+  return bytes;
+}
+
+// liblcm writes the second fragment to where its offset says, modulo 2^32: in
+// front of the message's memory. Processes that read with it end.
+TEST(BusDatagramTest, NoFragmentEndsTheProcess) {
+  const std::vector<Channel> channels = {Channel::kPose};
+  Inbox inbox;
+  const auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  ASSERT_TRUE(bus->Listen(channels, inbox).ok());
+  for (int i = 0; i < 20; ++i) {
+    SendRaw(17604, Fragment(0, 0));
+    SendRaw(17604, Fragment(1, 0xffffff00));
+  }
+  SendRaw(17604, {'L', 'C', '0', '2'});
+  Outbox out(*bus, 7);
+  auto pose = testing::Sample<terra_msg::pose_t>();
+  ASSERT_TRUE(out.Send(pose));
+  ASSERT_TRUE(Next(inbox).has_value());
+  // A batch is counted when all of it was handed over.
+  for (int i = 0; i < 500 && bus->counters().fragments < 40; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_EQ(bus->counters().fragments, 40);
+  EXPECT_EQ(bus->counters().no_message, 1);
+  EXPECT_EQ(bus->counters().received, 1);
+}
+
+TEST(BusDatagramTest, ManyThousandPacketsLeaveTheThreadItsEnd) {
+  const std::vector<Channel> channels = {Channel::kPose};
+  Inbox inbox;
+  auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  ASSERT_TRUE(bus->Listen(channels, inbox).ok());
+  std::atomic<bool> ended = false;
+  std::thread flooder([&ended] {
+    while (!ended) SendRaw(17604, Fragment(1, 0));
+  });
+  bus.reset();  // Joins the thread that reads.
+  ended = true;
+  flooder.join();
+}
 
 TEST(BusErrorTest, ABusyPortIsNamed) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -221,7 +296,7 @@ TEST(HeartbeatTest, TellsAChangedStateAtOnceAndElseOnceASecond) {
   const auto bus = OpenBus("memq://");
   Inbox inbox;
   Outbox out(*bus, 7);
-  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  Heartbeat heartbeat("test", "", out, *bus, *bus, inbox);
   StateNode node;
   const auto sent_at = [&](milliseconds at) -> std::int64_t {
     heartbeat.Advance(node, Time(at));
@@ -239,7 +314,7 @@ TEST(HeartbeatTest, AStateThatFluttersMakesNoFloodAndItsLastIsTold) {
   const auto bus = OpenBus("memq://");
   Inbox inbox;
   Outbox out(*bus, 7);
-  Heartbeat heartbeat("test", "", out, *bus, inbox);
+  Heartbeat heartbeat("test", "", out, *bus, *bus, inbox);
   StateNode node;
   Time next = Time(milliseconds(0));
   for (int i = 0; i < 1000; ++i) {

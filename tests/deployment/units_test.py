@@ -124,17 +124,33 @@ class Units(unittest.TestCase):
                             symlinks=True)
             names = [f"terra-{name}@demo.service" for name in PROCESSES]
             done = run("systemd-analyze", "verify", "--man=no", f"--root={root}", *names,
-                       "terra-multicast.service", "terra-advisor.target")
+                       "terra-multicast.service", "terra-firewall.service",
+                       "terra-advisor.target")
             ours = [line for line in done.stdout.splitlines() if "terra" in line]
             self.assertEqual((ours, done.returncode), ([], 0), done.stdout)
 
     @unittest.skipUnless(shutil.which("systemd-analyze"), "no systemd-analyze")
     def test_no_sandbox_is_weaker_than_it_was(self):
-        for unit in [*self.services(), self.unit_folder() / "terra-multicast.service"]:
+        for unit in [*self.services(), self.unit_folder() / "terra-multicast.service",
+                     self.unit_folder() / "terra-firewall.service"]:
             done = run("systemd-analyze", "security", "--no-pager", "--offline=yes",
                        f"--threshold={WORST_EXPOSURE}", unit)
             self.assertEqual(done.returncode, 0, done.stdout[-300:])
             self.assertIn("Overall exposure level", done.stdout)
+
+    def test_advisors_start_only_behind_the_rule_and_as_its_user(self):
+        for unit in self.services():
+            settings = self.settings(unit)
+            if "advisor@" in unit.name:
+                self.assertEqual(settings["User"], "terra-advisor")
+                self.assertEqual(settings["Requires"], "terra-firewall.service")
+                self.assertIn("terra-firewall.service", settings["After"].split())
+            else:
+                self.assertNotIn("User", settings)
+        self.assertIn("u terra-advisor ",
+                      (self.stage / "etc/sysusers.d/terra-advisor.conf").read_text())
+        rules = (self.stage / "etc/terra-advisor/advisors.nft").read_text()
+        self.assertIn('define advisors = "terra-advisor"', rules)
 
     def test_credentials_become_the_programs_environment(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -132,7 +132,7 @@ class Rig:
                     self.raw[heard.channel] = heard.data
                 self._take(heard.channel, message)
             for heard in self.advice_bus.heard(100):
-                if heard.channel == "TERRA_ADVICE":
+                if heard.channel in ("TERRA_ADVICE", "TERRA_STATUS"):
                     self._take(heard.channel, bus.decode(heard))
             if left <= 0:
                 return

@@ -258,7 +258,7 @@ TEST_F(LlmAdvisor, HeartbeatTellsCallsTokensAndLatency) {
   StartAround(server, "10");
   ASSERT_TRUE(Ask(11));
   EXPECT_TRUE(
-      robot_.deployed_bus().WaitFor<status_t>([](const status_t& message) {
+      robot_.advice_bus().WaitFor<status_t>([](const status_t& message) {
         return message.status_name == "model" &&
                CounterOf(message, "llm_calls") == 1 &&
                CounterOf(message, "tokens_in") == 1000 &&

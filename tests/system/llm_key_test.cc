@@ -122,7 +122,7 @@ TEST_F(KeyOfTheModel, IsInNoMessageLogRecordingResultOrOutput) {
           return message.request_id == request_id;
         }));
     // Also what the heartbeat says of it.
-    ASSERT_TRUE(robot_.deployed_bus().WaitFor<terra_msg::status_t>(
+    ASSERT_TRUE(robot_.advice_bus().WaitFor<terra_msg::status_t>(
         [](const terra_msg::status_t& message) {
           return message.status_name == "model" && !message.last_error.empty();
         }));

@@ -17,9 +17,9 @@
 #include "terrain/files/map_file.h"
 #include "terrain/native_search.h"
 #include "terrain/segment.h"
+#include "tests/support/bar_map.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/virtual_network.h"
-#include "tests/support/bar_map.h"
 #include "verifier/verifier_node.h"
 
 namespace terra {
@@ -141,7 +141,7 @@ class MovingRobot : public ::testing::Test {
     });
     network_.Start("advisor", [this](bus::Outbox& out) {
       return std::make_unique<advisor::AdvisorNode>(
-          "slow", std::make_unique<SlowBackend>(desk_), out, out, [this] {
+          "slow", std::make_unique<SlowBackend>(desk_), out, [this] {
             desk_.Answered();
           });
     });

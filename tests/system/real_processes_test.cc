@@ -120,7 +120,7 @@ TEST(RealProcesses, NoStartUpOrderIsNeeded) {
   for (const std::string name : {"verifier", "advisor", "planner", "map"}) {
     robot.Start(name);
     ASSERT_TRUE(
-        robot.deployed_bus().WaitFor<status_t>([&](const status_t& status) {
+        robot.BusOf(name).WaitFor<status_t>([&](const status_t& status) {
           return status.status_name == name;
         }));
   }
@@ -244,7 +244,7 @@ TEST(RealProcesses, EachEndsCleanlyWhenAsked) {
   robot.Start("advisor");
   for (const std::string name : {"map", "planner", "verifier", "advisor"}) {
     ASSERT_TRUE(
-        robot.deployed_bus().WaitFor<status_t>([&](const status_t& status) {
+        robot.BusOf(name).WaitFor<status_t>([&](const status_t& status) {
           return status.status_name == name;
         }));
     EXPECT_EQ(robot.process(name).Terminate(), 0) << name;

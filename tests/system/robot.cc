@@ -9,7 +9,16 @@ using std::chrono::milliseconds;
 using terra_msg::baseline_t;
 using terra_msg::deployed_t;
 
+bool IsAdvisor(const std::string& name) {
+  return name != "map" && name != "planner" && name != "graph-planner" &&
+         name != "verifier" && name != "logger";
+}
+
 }  // namespace
+
+BusPeer& Robot::BusOf(const std::string& name) {
+  return IsAdvisor(name) ? advice_ : deployed_;
+}
 
 Robot::Robot(const TerrainMap& map)
     : deployed_(buses_.url()), advice_(buses_.advice_url()) {
@@ -29,9 +38,7 @@ std::vector<std::string> Robot::BusOptions() const {
 
 ChildProcess& Robot::Start(const std::string& name,
                            const std::vector<std::string>& options) {
-  const bool has_program = name == "map" || name == "planner" ||
-                           name == "graph-planner" || name == "verifier" ||
-                           name == "logger";
+  const bool has_program = !IsAdvisor(name);
   std::vector<std::string> command = before_;
   command.push_back(
       ProgramPath(has_program ? "terra-" + name : "terra-advisor"));
@@ -78,7 +85,7 @@ std::optional<deployed_t> Robot::WaitForDeployed(std::int64_t request_id,
 
 bool Robot::WaitForReady(const std::string& name, milliseconds at_most) {
   const pid_t pid = process(name).pid();
-  return deployed_
+  return BusOf(name)
       .WaitFor<terra_msg::status_t>(
           [&](const terra_msg::status_t& status) {
             return status.status_name == name && status.pid == pid &&

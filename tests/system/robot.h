@@ -55,6 +55,8 @@ class Robot {
   const TestBus& buses() const { return buses_; }
   BusPeer& deployed_bus() { return deployed_; }
   BusPeer& advice_bus() { return advice_; }
+  /// Where the process of this name says its STATUS.
+  BusPeer& BusOf(const std::string& name);
 
  private:
   TestBus buses_;

@@ -32,7 +32,7 @@ FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decod
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
 needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit
-waits-for-stderr""".split()
+waits-for-stderr ends-on-fragment""".split()
 
 
 def chain_of(cells):
@@ -59,12 +59,23 @@ class Gate:
         self.decision = self.route_seq = 0
         self.message = None
         self.send_failed = self.from_replaced = self.lost = self.last_seq = 0
+        self.fragments = 0
         self.files = []
 
     def lacks(self, flaw):
         return self.flaw == flaw
 
     # ---- What is heard ----
+
+    def _heard_deployed(self, at_most):
+        for ns, datagram, _ in self.out.datagrams(at_most):
+            if datagram[:4] == b"LC03":
+                self.fragments += 1
+                if self.lacks("ends-on-fragment"):
+                    sys.exit("a fragment")
+            channel, end, data = datagram[8:].partition(b"\0")
+            if end and datagram[:4] == b"LC02" and channel.decode(errors="replace") in bus.TYPES:
+                yield bus.Heard(ns, channel.decode(), data)
 
     def hear(self, heard):
         message = bus.decode(heard)
@@ -278,7 +289,8 @@ class Gate:
             self._deploy(NONE, [], None, None)
 
     def status(self):
-        counters = {"send_failed": self.send_failed, "from_replaced_planner": self.from_replaced, "lost": self.lost}
+        counters = {"send_failed": self.send_failed, "from_replaced_planner": self.from_replaced, "lost": self.lost,
+                    "fragments": self.fragments}
         self.out.say("TERRA_STATUS", {
             "status_name": "verifier", "state": "ready", "num_counters": len(counters),
             "counter_name": list(counters), "counter_value": list(counters.values())})
@@ -292,7 +304,7 @@ class Gate:
             if self.lacks("reads-all"):
                 while self._read_advice(1_000):
                     pass
-            for heard in self.out.heard(200):
+            for heard in self._heard_deployed(200):
                 if heard.channel != "TERRA_ADVICE":
                     self.hear(heard)
             self._read_advice(200)

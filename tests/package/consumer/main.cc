@@ -1,13 +1,15 @@
-// Uses the verifier and a message type from outside the project.
+// Uses the verifier, a message type and the receiver from outside the project.
 #include <cstdio>
 #include <vector>
 
 #include "terra_msg/verdict_t.hpp"
 
+#include "bus/udpm_receiver.h"
 #include "terrain/builtin_legends.h"
 #include "verifier/verify.h"
 
 int main() {
+  if (terra::bus::UdpmReceiver::Open("memq://").ok()) return 1;
   const auto map = terra::TerrainMap::Create(terra::ByteRaster::Zero(5, 5),
                                              terra::MultiTerraPathLegend());
   const terra::Route detour = {{0, 0}, {4, 0}, {4, 4}};

@@ -110,7 +110,8 @@ class VerifierNodeTest : public ::testing::Test, public bus::Transport {
     std::vector<std::uint8_t> bytes(
         static_cast<std::size_t>(advice.getEncodedSize()));
     advice.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    node_.OnAdviceBytes(bytes, now_);
+    node_.OnAdviceBytes(1, bytes, now_);
+    node_.Advance(now_);
   }
   Code CodeFor(const advice_t& advice) {
     verdicts_.clear();
@@ -389,7 +390,7 @@ TEST_F(VerifierNodeTest, NoNameKeepsTheGateFromSpeaking) {
 
 TEST_F(VerifierNodeTest, MalformedAdviceIsCountedAndHidesNoTroubleWithTheMap) {
   const std::vector<std::uint8_t> garbage(40, 7);
-  node_.OnAdviceBytes(garbage, now_);
+  node_.OnAdviceBytes(1, garbage, now_);
   EXPECT_EQ(Counter("malformed_advice"), 1);
   EXPECT_NE(node_.last_error().find("advice"), std::string::npos);
   terra_msg::map_header_t header = bus::MakeMapHeader(Field());
@@ -397,7 +398,7 @@ TEST_F(VerifierNodeTest, MalformedAdviceIsCountedAndHidesNoTroubleWithTheMap) {
   header.seq = 1;
   header.width = -1;
   Hear(header);
-  node_.OnAdviceBytes(garbage, now_);
+  node_.OnAdviceBytes(1, garbage, now_);
   EXPECT_EQ(node_.last_error().find("advice"), std::string::npos);
   EXPECT_FALSE(node_.last_error().empty());
 }
@@ -408,6 +409,7 @@ TEST_F(VerifierNodeTest, TakesAdviceOffTheDeployedBusOnlyWhenTold) {
   EXPECT_TRUE(verdicts_.empty());
   node_.ListenToAdvice();
   Hear(AdviceOf(kTop));
+  node_.Advance(now_);
   ASSERT_EQ(verdicts_.size(), 1u);
   EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_ACCEPTED);
 }

@@ -24,7 +24,8 @@ struct Logged {
   T message;
 };
 
-/// What names an advice: the gate judges each only once.
+/// What names an advice in its verdict. Several may bear one name: advice is
+/// open to everybody, and the gate judges each content once.
 struct AdviceName {
   std::int64_t request_id = 0;
   std::int64_t map_id = 0;

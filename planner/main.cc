@@ -1,6 +1,6 @@
 // terra-planner: the baseline planner on a coarse lattice.
-// Listens to the map, PLAN_REQUEST and DEPLOYED; publishes BASELINE, STATUS,
-// CONFIG; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
+// Listens to the map, PLAN_REQUEST, DEPLOYED and VERDICT; publishes BASELINE,
+// STATUS, CONFIG; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
 #include <CLI/CLI.hpp>
 
 #include "bus/process.h"

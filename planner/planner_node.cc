@@ -19,6 +19,10 @@ constexpr bus::Duration kMapPatience = std::chrono::seconds(2);
 // A gate on hold asks for a new plan; on an unchanged map it gets one this
 // often.
 constexpr bus::Duration kReplanPause = std::chrono::seconds(1);
+// A gate answers a new baseline well within this time; where it does not, the
+// baseline was lost or its answer was.
+constexpr bus::Duration kAnswerTime = std::chrono::milliseconds(10);
+constexpr int kQuickRepeats = 3;
 
 std::int8_t StatusOf(SearchStatus status) {
   switch (status) {
@@ -62,11 +66,33 @@ PlannerNode::PlannerNode(std::string name, PlanFunction plan, bus::Outbox& out)
   Listen<terra_msg::deployed_t>([this](const auto& message, bus::Time now) {
     OnDeployed(message, now);
   });
+  Listen<terra_msg::verdict_t>([this](const auto& message, bus::Time) {
+    if (message.subject != terra_msg::verdict_t::SUBJECT_BASELINE) return;
+    OnAnswer(message.request_id, message.map_id, message.baseline_digest);
+  });
+}
+
+void PlannerNode::OnAnswer(std::int64_t request_id, std::int64_t map_id,
+                           std::int64_t baseline_digest) {
+  if (has_baseline_ && request_id == baseline_.request_id &&
+      map_id == baseline_.map_id &&
+      baseline_digest == baseline_.baseline_digest) {
+    unanswered_at_ = bus::kNever;
+  }
+}
+
+void PlannerNode::SayAgain(bus::Time now) {
+  out_.Send(baseline_);
+  repeat_.Postpone(now);
+  ++all_quick_repeats_;
+  unanswered_at_ =
+      ++quick_repeats_ < kQuickRepeats ? now + kAnswerTime : bus::kNever;
 }
 
 void PlannerNode::OnDeployed(const terra_msg::deployed_t& message,
                              bus::Time now) {
   if (!gate_.Accept(message.session, message.seq)) return;
+  OnAnswer(message.request_id, message.map_id, message.baseline_digest);
   RequestInForce carried;
   carried.request_id = message.request_id;
   carried.cancelled = message.cause == terra_msg::deployed_t::CAUSE_CANCELLED;
@@ -88,6 +114,7 @@ void PlannerNode::OnDeployed(const terra_msg::deployed_t& message,
 
 void PlannerNode::OnRequestChanged(bus::Time now) {
   has_baseline_ = false;
+  unanswered_at_ = bus::kNever;
   no_map_at_ = map_.map() ? bus::kNever : now + kMapPatience;
   Plan(now);
 }
@@ -120,6 +147,10 @@ void PlannerNode::Plan(bus::Time now) {
   has_baseline_ = true;
   out_.Send(baseline_);
   repeat_.Postpone(now);
+  // Only a route has an answer that names it.
+  quick_repeats_ = 0;
+  unanswered_at_ = baseline_.status == baseline_t::STATUS_OK ? now + kAnswerTime
+                                                             : bus::kNever;
 }
 
 void PlannerNode::FillBaseline(const RequestInForce& request) {
@@ -151,9 +182,10 @@ void PlannerNode::FillRoute(const LatticePlan& plan) {
 
 bus::Time PlannerNode::Advance(bus::Time now) {
   if (now >= no_map_at_) Plan(now);
+  if (has_baseline_ && now >= unanswered_at_) SayAgain(now);
   if (has_baseline_ && repeat_.Due(now)) out_.Send(baseline_);
   const bus::Time repeat = has_baseline_ ? repeat_.next() : bus::kNever;
-  return std::min({map_.Advance(now), repeat, no_map_at_});
+  return std::min({map_.Advance(now), repeat, unanswered_at_, no_map_at_});
 }
 
 std::string PlannerNode::state() const {
@@ -169,6 +201,7 @@ std::string PlannerNode::last_error() const {
 void PlannerNode::AddCounters(bus::Counters& counters) const {
   Node::AddCounters(counters);
   counters.emplace_back("plans", plans_);
+  counters.emplace_back("quick_repeats", all_quick_repeats_);
   counters.emplace_back(
       "lost", static_cast<std::int64_t>(map_.sender().lost() + gate_.lost()));
   counters.emplace_back("from_replaced_map_server",

@@ -15,8 +15,10 @@ namespace terra::planner {
 using PlanFunction =
     std::function<LatticePlan(const TerrainMap& map, Cell start, Cell goal)>;
 
-/// A baseline planner on the bus: listens to map, PLAN_REQUEST and DEPLOYED,
-/// publishes BASELINE at once and then 5 times a second. It waits for nobody.
+/// A baseline planner on the bus: listens to map, PLAN_REQUEST, DEPLOYED and
+/// VERDICT, publishes BASELINE at once and then 5 times a second. It waits for
+/// nobody. A baseline that neither DEPLOYED nor VERDICT names within 10 ms was
+/// perhaps lost: it is said again at once, three times at most.
 ///
 /// A planner of one's own is this node with another PlanFunction (see
 /// main.cc), or any program that publishes BASELINE.
@@ -35,6 +37,10 @@ class PlannerNode : public bus::Node {
   void PlanWith(PlanFunction plan, bus::Time now);
 
  private:
+  /// The gate has the baseline in hand: it names it.
+  void OnAnswer(std::int64_t request_id, std::int64_t map_id,
+                std::int64_t baseline_digest);
+  void SayAgain(bus::Time now);
   void OnDeployed(const terra_msg::deployed_t& message, bus::Time now);
   void OnRequestChanged(bus::Time now);
   void Plan(bus::Time now);
@@ -50,6 +56,10 @@ class PlannerNode : public bus::Node {
   terra_msg::baseline_t baseline_{};
   bool has_baseline_ = false;
   bus::Periodic repeat_{bus::kStatePeriod};
+  // When a baseline that no answer names is said again; kNever once one does.
+  bus::Time unanswered_at_ = bus::kNever;
+  int quick_repeats_ = 0;
+  std::int64_t all_quick_repeats_ = 0;
   // When to say that there is no map; kNever once there is one.
   bus::Time no_map_at_ = bus::kNever;
   bus::Time planned_at_{};

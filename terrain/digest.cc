@@ -29,8 +29,12 @@ class ByteList {
 
 }  // namespace
 
+std::int64_t BytesDigest(std::span<const std::uint8_t> bytes) {
+  return static_cast<std::int64_t>(XXH3_64bits(bytes.data(), bytes.size()));
+}
+
 std::int64_t TileDigest(std::span<const std::uint8_t> ids) {
-  return static_cast<std::int64_t>(XXH3_64bits(ids.data(), ids.size()));
+  return BytesDigest(ids);
 }
 
 std::vector<std::int64_t> TileDigests(const ByteRaster& ids,

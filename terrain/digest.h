@@ -14,6 +14,9 @@ namespace terra {
 /// bytes, and fit a signed 64-bit message field bit for bit. They tell maps and
 /// routes apart; they are no defence against somebody who wants a collision.
 
+/// Digest of any bytes.
+std::int64_t BytesDigest(std::span<const std::uint8_t> bytes);
+
 /// Digest of a tile's uncompressed ids, row by row.
 std::int64_t TileDigest(std::span<const std::uint8_t> ids);
 

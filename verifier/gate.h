@@ -50,6 +50,11 @@ class Gate {
   Decisions On(const AdviceEvent& event);
   Decisions On(const PoseEvent& event);  ///< Never decides anything by itself.
 
+  /// Returns whether advice would get a verdict now. Else it is a repeat,
+  /// speaks of what the gate does not know, or needs none, and costs no walk of
+  /// a map.
+  bool WouldJudge(const AdviceEvent& event) const;
+
   /// What is in force, to be repeated while it is; request_id 0 = nothing yet.
   const Deployed& deployed() const { return deployed_; }
   /// The deployed route and how far the robot has come along it.

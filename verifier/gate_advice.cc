@@ -18,6 +18,11 @@ bool IsWellFormed(const AdviceEvent& event) {
 
 }  // namespace
 
+bool Gate::WouldJudge(const AdviceEvent& event) const {
+  return event.kind != AdviceKind::kFailed && CheckKey(event) &&
+         !judged_.Has(event);
+}
+
 Decisions Gate::On(const AdviceEvent& event) {
   Decisions out;
   if (event.kind == AdviceKind::kFailed) {

@@ -81,6 +81,8 @@ struct AdviceEvent {
   Anchor anchor;
   AdviceKind kind = AdviceKind::kNone;
   Route waypoints;
+
+  friend bool operator==(const AdviceEvent&, const AdviceEvent&) = default;
 };
 
 /// POSE.

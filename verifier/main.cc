@@ -13,9 +13,19 @@
 
 namespace {
 
-// Datagrams read from the advice bus in one turn; the receiver hands on far
-// fewer (20 a second of one sender).
-constexpr std::size_t kDatagramsPerTurn = 64;
+// Datagrams read from the advice bus in one turn, so few that decoding the
+// largest keeps the deployed bus waiting for less than a millisecond.
+constexpr std::size_t kDatagramsPerTurn = 8;
+
+// Which advice is judged, and when, is the node's queue's business: a limit on
+// all senders together would be filled by whoever speaks most. This one bounds
+// what is decoded.
+constexpr terra::bus::AdviceRateLimiter::Limits kLimits = {.per_sender = 20,
+                                                           .all = 6'000};
+
+terra::verifier::SenderId IdOf(terra::bus::SenderAddress sender) {
+  return (std::uint64_t{sender.address} << 16) | sender.port;
+}
 
 std::int64_t Microseconds(terra::bus::Time time) {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -48,7 +58,7 @@ int main(int argc, char** argv) {
     }
     auto opened = terra::bus::AdviceReceiver::Open(
         context.bus.advice_url,
-        context.channels.name(terra::bus::Channel::kAdvice));
+        context.channels.name(terra::bus::Channel::kAdvice), kLimits);
     if (!opened) return opened.error();
     receiver.emplace(*std::move(opened));
     node->Count(*receiver);
@@ -56,8 +66,9 @@ int main(int argc, char** argv) {
     context.loop.Watch(receiver->fd(), [&, gate_node](terra::bus::Time now) {
       receiver->Drain(Microseconds(now), kDatagramsPerTurn,
                       [gate_node, now](const terra::bus::LcmDatagram& datagram,
-                                       terra::bus::SenderAddress) {
-                        gate_node->OnAdviceBytes(datagram.payload, now);
+                                       terra::bus::SenderAddress sender) {
+                        gate_node->OnAdviceBytes(IdOf(sender), datagram.payload,
+                                                 now);
                       });
     });
     return std::unique_ptr<terra::bus::Node>(std::move(node));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 #include <variant>
 
 #include "bus/request_tracker.h"
@@ -15,6 +16,16 @@ using terra_msg::baseline_t;
 using terra_msg::deployed_t;
 using terra_msg::verdict_t;
 
+// A planner says a baseline again at once when it has heard no answer; later
+// than this after the answer it is but the usual repetition.
+constexpr bus::Duration kPlannerInDoubt = std::chrono::milliseconds(100);
+
+std::int64_t Microseconds(bus::Time time) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             time.time_since_epoch())
+      .count();
+}
+
 GateOptions WithSession(GateOptions options, std::int64_t session) {
   if (options.session == 0) options.session = session;
   return options;
@@ -23,7 +34,10 @@ GateOptions WithSession(GateOptions options, std::int64_t session) {
 }  // namespace
 
 VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
-    : gate_(WithSession(options, out.session())), out_(out), map_(out) {
+    : replays_(options.session != 0),
+      gate_(WithSession(options, out.session())),
+      out_(out),
+      map_(out) {
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
     if (map_.OnHeader(message, now)) OnMap(now);
   });
@@ -47,19 +61,38 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
 
 void VerifierNode::ListenToAdvice() {
   Listen<advice_t>([this](const auto& message, bus::Time now) {
-    Decide(ToEvent(message), now);
+    OnAdvice(static_cast<SenderId>(message.session), ToEvent(message), now);
   });
 }
 
-void VerifierNode::OnAdviceBytes(std::span<const std::uint8_t> bytes,
+void VerifierNode::OnAdviceBytes(SenderId sender,
+                                 std::span<const std::uint8_t> bytes,
                                  bus::Time now) {
   const Result<advice_t> message = bus::Decode<advice_t>(bytes);
   if (message) {
-    Decide(ToEvent(*message), now);
+    OnAdvice(sender, ToEvent(*message), now);
   } else {
     ++malformed_advice_;
     advice_error_ = "advice: " + message.error().message;
   }
+}
+
+// What gets no verdict costs little and takes nobody's turn.
+void VerifierNode::OnAdvice(SenderId sender, AdviceEvent event, bus::Time now) {
+  if (replays_ || !gate_.WouldJudge(event)) {
+    Decide(event, now);
+  } else {
+    queue_.Add(sender, std::move(event));
+  }
+}
+
+bus::Time VerifierNode::JudgeOne(bus::Time now) {
+  if (queue_.size() == 0) return bus::kNever;
+  if (const auto advice = queue_.Next(Microseconds(now))) Decide(*advice, now);
+  const std::int64_t next_us = queue_.next_us();
+  if (next_us == AdviceQueue::kNever) return bus::kNever;
+  if (next_us <= Microseconds(now)) return now;
+  return bus::Time(std::chrono::microseconds(next_us));
 }
 
 void VerifierNode::OnMap(bus::Time now) {
@@ -70,8 +103,17 @@ void VerifierNode::OnMap(bus::Time now) {
 }
 
 void VerifierNode::OnBaseline(const baseline_t& message, bus::Time now) {
-  if (planner_.Accept(message.session, message.seq)) {
-    Decide(ToEvent(message), now);
+  if (!planner_.Accept(message.session, message.seq)) return;
+  const std::int64_t decision = gate_.deployed().decision;
+  Decide(ToEvent(message), now);
+  // The answer was perhaps lost, and the robot's copy of it too.
+  const bool answered =
+      gate_.deployed().decision == decision && gate_.deployed().has_route() &&
+      message.request_id == gate_.deployed().request_id &&
+      message.baseline_digest == gate_.deployed().baseline_digest;
+  if (answered && now < changed_at_ + kPlannerInDoubt) {
+    out_.Send(deployed_message_);
+    repeat_.Postpone(now);
   }
 }
 
@@ -97,15 +139,16 @@ void VerifierNode::Send(const Verdict& verdict, std::int64_t t_det_us) {
 
 void VerifierNode::Send(const Deployed& deployed, bus::Time now) {
   deployed_message_ = ToMessage(deployed);
+  changed_at_ = now;
   out_.Send(deployed_message_);
   repeat_.Postpone(now);
 }
 
 bus::Time VerifierNode::Advance(bus::Time now) {
-  const bus::Time ask = map_.Advance(now);
-  if (gate_.deployed().request_id == 0) return ask;
+  const bus::Time next = std::min(map_.Advance(now), JudgeOne(now));
+  if (gate_.deployed().request_id == 0) return next;
   if (repeat_.Due(now)) out_.Send(deployed_message_);
-  return std::min(ask, repeat_.next());
+  return std::min(next, repeat_.next());
 }
 
 std::string VerifierNode::state() const {
@@ -143,6 +186,9 @@ void VerifierNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("other_baselines", gate.other_baselines);
   counters.emplace_back("other_poses", gate.other_poses);
   counters.emplace_back("malformed_advice", malformed_advice_);
+  counters.emplace_back("advice_waiting",
+                        static_cast<std::int64_t>(queue_.size()));
+  counters.emplace_back("advice_without_room", queue_.dropped());
   counters.emplace_back("lost", static_cast<std::int64_t>(map_.sender().lost() +
                                                           planner_.lost()));
   counters.emplace_back("from_replaced_planner", planner_.from_replaced());

@@ -6,6 +6,7 @@
 #include "bus/advice_receiver.h"
 #include "bus/map_receiver.h"
 #include "bus/node.h"
+#include "verifier/advice_queue.h"
 #include "verifier/gate.h"
 
 namespace terra::verifier {
@@ -16,17 +17,22 @@ namespace terra::verifier {
 ///
 /// All decisions are Gate's; this class converts messages and keeps time. The
 /// deployed bus is handed over before advice in every turn (bus/event_loop.h).
+/// Advice that gets a verdict waits in an AdviceQueue; Advance judges one, so
+/// the deployed bus is looked at between any two.
 class VerifierNode : public bus::Node {
  public:
   /// The session of the options is the outbox's.
   VerifierNode(GateOptions options, bus::Outbox& out);
 
   /// Takes ADVICE from the deployed bus too: for a bus that has no second port
-  /// (memq://, file://) and for log replay.
+  /// (memq://, file://) and for log replay. The sender is the session; in a
+  /// replay (option --replay-session) advice is judged in order of arrival.
   void ListenToAdvice();
 
-  /// Takes the bytes of one ADVICE message off the advice bus.
-  void OnAdviceBytes(std::span<const std::uint8_t> bytes, bus::Time now);
+  /// Takes the bytes of one ADVICE message off the advice bus. `sender` is who
+  /// the receiver says it is.
+  void OnAdviceBytes(SenderId sender, std::span<const std::uint8_t> bytes,
+                     bus::Time now);
 
   /// For the heartbeat; the receiver must outlive the node.
   void Count(const bus::AdviceReceiver& receiver) { receiver_ = &receiver; }
@@ -38,6 +44,9 @@ class VerifierNode : public bus::Node {
 
  private:
   void OnMap(bus::Time now);
+  void OnAdvice(SenderId sender, AdviceEvent event, bus::Time now);
+  // Returns when the next advice may be judged.
+  bus::Time JudgeOne(bus::Time now);
   void OnBaseline(const terra_msg::baseline_t& message, bus::Time now);
 
   /// Lets the gate decide, publishes what came of it.
@@ -46,12 +55,15 @@ class VerifierNode : public bus::Node {
   void Send(const Verdict& verdict, std::int64_t t_det_us);
   void Send(const Deployed& deployed, bus::Time now);
 
+  const bool replays_;
   Gate gate_;
+  AdviceQueue queue_;
   bus::Outbox& out_;
   bus::MapReceiver map_;
   bus::SenderTracker planner_;
   bus::Periodic repeat_{bus::kStatePeriod};
   terra_msg::deployed_t deployed_message_{};
+  bus::Time changed_at_{};  // when deployed_message_ was new
   const bus::AdviceReceiver* receiver_ = nullptr;
   std::int64_t malformed_advice_ = 0;
   std::string advice_error_;

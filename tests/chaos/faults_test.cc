@@ -224,7 +224,7 @@ const std::map<std::string_view, Expectation>& Expectations() {
           return seen.advice->kind == advice_t::KIND_RETAIN ||
                  RouteIsGood(seen);
         },
-        {"retained"}}},
+        {"retained", "accepted", "not_best"}}},
       {"replay",
        {[](const Seen& seen) {
           return seen.advice->session == kOtherSession;
@@ -297,7 +297,10 @@ class Gate : public bus::Transport {
   void Take(const Datagram& datagram) {
     const auto message = bus::ParseLcmDatagram(datagram);
     if (message && message->channel == "TERRA_ADVICE") {
-      node_.OnAdviceBytes(message->payload, now_);
+      // (each after a pause that no budget forbids)
+      now_ += std::chrono::milliseconds(10);
+      node_.OnAdviceBytes(1, message->payload, now_);
+      node_.Advance(now_);
     }
   }
   const std::vector<verdict_t>& said() const { return said_; }

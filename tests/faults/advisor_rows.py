@@ -109,12 +109,9 @@ def liar(kind, flaws, short=False):
          else "; GATE 10" if kind in ("keys", "who says it") else ""), flaws, short=short)
     def lies(rig):
         rig.set_up()
-        if "same-attempt" in LIES[kind]:
-            attacked(rig, ["same-attempt"], rate=10)  # while there is something to gain
         rig.start("searcher")
         # Below the gate's limits, so that it judges each of them.
-        flags = LIES[kind] + ([] if "same-attempt" in LIES[kind] else ["many-senders"])
-        served = attacked(rig, flags, rate=15 if "same-attempt" in flags else 150)
+        served = attacked(rig, LIES[kind] + ["many-senders"])
         rig.serve()
         rig.await_candidate()
         return f"{served} of {served} requests served, no lie accepted, the honest advisor is"
@@ -134,7 +131,7 @@ def attacker(kind, covers, flaws):
 liar("geometry", ["verifier:no-geometry"], short=True)
 liar("costs", ["verifier:no-cost"])
 liar("keys", ["verifier:no-key"])
-liar("who says it", ["verifier:no-geometry", "verifier:no-attempts"])
+liar("who says it", ["verifier:no-geometry"])
 attacker("bytes", "GATE 5; LCM hostile bytes, version skew", ["verifier:no-decoder"])
 attacker("datagrams", "GATE 6; LCM hostile UDP, oversize", ["verifier:no-framing"])
 

@@ -34,6 +34,10 @@ class Tap(lcm_bus.Peer):
         self.sending_port = self._out.getsockname()[1]
         self.overflown = 0
 
+    @property
+    def session(self):
+        return self._session
+
     def say(self, channel, message):
         """Returns whether the network took it."""
         message = dict(message, utime=int(time.time() * 1e6), session=self._session)

@@ -495,9 +495,9 @@ TEST(Audit, ACandidateMayStayWithoutABaseline) {
       << Text(AuditOf(BeginningWith(kept, run.messages())));
 }
 
-// An advisor that says two things under one name is no fault of the gate, if
-// the seals show that the log is as it was heard.
-TEST(Audit, AnAdvisorsContradictionIsANoteInASealedLog) {
+// Anybody may copy an attempt number, so two messages under one name are no
+// fault of the gate, with seals or without.
+TEST(Audit, ACopiedAttemptNumberIsNoConflict) {
   Messages messages = EventfulRun();
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (messages[i].channel != bus::Channel::kAdvice) continue;
@@ -507,13 +507,13 @@ TEST(Audit, AnAdvisorsContradictionIsANoteInASealedLog) {
                     {bus::Channel::kAdvice, bus::Encode(advice)});
     break;
   }
-  EXPECT_FALSE(AuditOf(messages).clean());
+  EXPECT_TRUE(AuditOf(messages).clean()) << Text(AuditOf(messages));
   const TempFolder folder;
   Result<LogReader> reader =
       LogReader::Open(RecordParts(messages, 1'000'000, folder).at(0));
   const Audit audit = AuditLog(*reader);
   EXPECT_TRUE(audit.clean()) << Text(audit);
-  EXPECT_EQ(audit.notes.size(), 1U);
+  EXPECT_TRUE(audit.notes.empty());
 }
 
 // ---- Advice that the recorder turned away in a flood. ----

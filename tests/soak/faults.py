@@ -37,10 +37,6 @@ def chaos_options(generator):
     """A new way to misbehave."""
     lies = generator.sample(LIES, generator.randint(1, 6))
     rate = generator.choice([None, 0.5, 5, 50, 500])
-    if (rate is None or rate > 5) and "same-attempt" in lies:
-        # Over its limits the gate may hear only the second of two messages, and
-        # rightly take it for the first; terra-chaos would call that a lie.
-        lies[lies.index("same-attempt")] = "honest"
     options = ["--" + lie for lie in sorted(set(lies))]
     options += ["--seed", str(generator.randrange(1 << 31))]
     options += ["--flood"] if rate is None else ["--rate", str(rate)]

@@ -15,12 +15,17 @@ bus::Node& VirtualNetwork::Start(const std::string& name, const Factory& make) {
 
 void VirtualNetwork::Publish(const Port* from, bus::Channel channel,
                              std::vector<std::uint8_t> bytes) {
+  int& to_lose = lose_next_[channel];
+  const bool all_lose = to_lose > 0;
+  if (all_lose) --to_lose;
   for (const auto& [name, process] : processes_) {
     const auto& channels = process->node->channels();
     const bool listens =
         std::find(channels.begin(), channels.end(), channel) != channels.end();
     const bool lost = lose_one_in_ > 0 && random_.OneIn(lose_one_in_);
-    if (&process->port == from || !listens || lost) continue;
+    if (&process->port == from || !listens || lost || all_lose) {
+      continue;
+    }
     process->arriving.push_back(bus::RawMessage{channel, bytes});
   }
   sent_.push_back(bus::RawMessage{channel, std::move(bytes)});

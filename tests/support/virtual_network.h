@@ -27,6 +27,8 @@ class VirtualNetwork {
 
   /// One in n messages is lost, per receiver; 0 = none.
   void LoseOneIn(int n) { lose_one_in_ = n; }
+  /// So many messages on this channel from now on are lost, for all receivers.
+  void LoseNext(bus::Channel channel, int n) { lose_next_[channel] = n; }
 
   void Run(bus::Duration duration);
   /// Runs until it holds, at most so long; returns whether it did.
@@ -89,6 +91,7 @@ class VirtualNetwork {
 
   Random random_;
   int lose_one_in_ = 0;
+  std::map<bus::Channel, int> lose_next_;
   bus::Time now_{std::chrono::hours(1)};
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::vector<bus::RawMessage> sent_;

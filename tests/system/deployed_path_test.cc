@@ -202,6 +202,55 @@ TEST_F(DeployedPathTest, RepeatedAdviceGetsOneVerdict) {
   EXPECT_EQ(network_.Sent<verdict_t>().size(), 1u);
 }
 
+// What one lost datagram costs: the planner's patience, not its period.
+TEST_F(DeployedPathTest, ALostBaselineIsSaidAgainAtOnce) {
+  StartAll();
+  network_.Run(seconds(2));
+  for (int lost = 1; lost <= 3; ++lost) {
+    network_.LoseNext(bus::Channel::kBaseline, lost);
+    Ask(10 + lost);
+    EXPECT_TRUE(network_.RunUntil(
+        [=, this] {
+          return Deployed(10 + lost, deployed_t::MODE_BASELINE);
+        },
+        milliseconds(10 * lost + 1)))
+        << lost << " lost";
+  }
+}
+
+TEST_F(DeployedPathTest, ALostDeployedIsSaidAgainAtOnce) {
+  StartAll();
+  network_.Run(seconds(2));
+  // The answer to the request, without a route yet, and the route.
+  network_.LoseNext(bus::Channel::kDeployed, 2);
+  network_.ForgetSent();
+  Ask(11);
+  network_.Run(milliseconds(11));
+  EXPECT_EQ(network_.Sent<deployed_t>().size(), 3u);
+  EXPECT_TRUE(Deployed(11, deployed_t::MODE_BASELINE));
+  network_.Run(milliseconds(90));
+  EXPECT_EQ(network_.Sent<deployed_t>().size(), 3u) << "and no more";
+}
+
+TEST_F(DeployedPathTest, WithoutAGateABaselineIsRepeatedThriceThenAsUsual) {
+  StartMap();
+  StartPlanner();
+  network_.Run(seconds(2));
+  Ask(11);
+  network_.Run(milliseconds(100));
+  EXPECT_EQ(network_.Sent<baseline_t>().size(), 4u);
+  network_.Run(milliseconds(1000));
+  EXPECT_EQ(network_.Sent<baseline_t>().size(), 9u) << "five times a second";
+}
+
+TEST_F(DeployedPathTest, ABaselineThatIsAnsweredIsNotSaidAgainAtOnce) {
+  StartAll();
+  network_.Run(seconds(2));
+  Ask(11);
+  network_.Run(milliseconds(100));
+  EXPECT_EQ(network_.Sent<baseline_t>().size(), 1u);
+}
+
 TEST_F(DeployedPathTest, AdviceThroughAnObstacleChangesNothing) {
   SaveMap(BarMap(11));
   StartAll();

@@ -99,15 +99,28 @@ TEST(GateTest, JudgedAdviceGetsExactlyOneVerdict) {
   AdviceEvent advice = h.AdviceOf(kTop);
   EXPECT_EQ(h.gate.On(advice).size(), 2u);
   EXPECT_THAT(h.gate.On(advice), IsEmpty());
+  EXPECT_EQ(h.gate.counters().repeats, 1);
   advice.waypoints = kBottom;
-  EXPECT_THAT(h.gate.On(advice), IsEmpty()) << "same attempt, other content";
-  EXPECT_EQ(h.gate.counters().repeats, 2);
+  EXPECT_EQ(CodeOf(h.gate.On(advice)), Code::kNotBest)
+      << "other content is another advice";
   advice.candidate = 2;
   EXPECT_EQ(CodeOf(h.gate.On(advice)), Code::kNotBest);
   advice.attempt += 1;
   EXPECT_EQ(CodeOf(h.gate.On(advice)), Code::kNotBest);
   advice.session += 1;
   EXPECT_EQ(CodeOf(h.gate.On(advice)), Code::kNotBest);
+}
+
+TEST(GateTest, ACopiedAttemptNumberSilencesNobody) {
+  GateHarness h = Ready();
+  const AdviceEvent honest = h.AdviceOf(kTop);
+  AdviceEvent copied = honest;
+  copied.kind = AdviceKind::kRetain;
+  copied.waypoints.clear();
+  EXPECT_EQ(CodeOf(h.gate.On(copied)), Code::kRetained);
+  EXPECT_TRUE(h.gate.WouldJudge(honest));
+  EXPECT_EQ(CodeOf(h.gate.On(honest)), Code::kAccepted);
+  EXPECT_FALSE(h.gate.WouldJudge(honest)) << "has its verdict";
 }
 
 TEST(GateTest, AFloodDoesNotMakeRepeatedAdviceNew) {

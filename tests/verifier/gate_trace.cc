@@ -225,11 +225,9 @@ class Player {
   bool NoteAdvice(const Turn& turn) {
     const auto* advice = std::get_if<AdviceEvent>(&turn.event);
     if (advice == nullptr) return false;
-    const Key key = {advice->request_id,      advice->map_id,
-                     advice->baseline_digest, advice->session,
-                     advice->attempt,         advice->candidate};
-    const bool repeat = judged_.count(key) != 0;
-    if (!turn.decisions.empty()) judged_.insert(key);
+    const bool repeat =
+        std::find(judged_.begin(), judged_.end(), *advice) != judged_.end();
+    if (!turn.decisions.empty()) judged_.push_back(*advice);
     return repeat;
   }
 
@@ -315,14 +313,11 @@ class Player {
                : OracleCheck{Code::kMalformedMessage, {}};
   }
 
-  using Key = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::int64_t,
-                         std::int64_t, std::int32_t>;
-
   std::uint64_t bits_ = 0;
   std::int64_t next_id_ = 1;
   std::int64_t next_attempt_ = 0;
   std::vector<std::int64_t> digests_;
-  std::set<Key> judged_;
+  std::vector<AdviceEvent> judged_;
   Gate gate_{kTraceOptions};
   Observed now_;
   std::vector<Turn> turns_;

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -106,11 +107,16 @@ class VerifierNodeTest : public ::testing::Test, public bus::Transport {
     return advice;
   }
   // As LCM itself encodes it, with no look at the limits.
-  void Advise(const advice_t& advice) {
+  void Send(SenderId sender, const advice_t& advice) {
     std::vector<std::uint8_t> bytes(
         static_cast<std::size_t>(advice.getEncodedSize()));
     advice.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    node_.OnAdviceBytes(bytes, now_);
+    node_.OnAdviceBytes(sender, bytes, now_);
+  }
+  void Advise(const advice_t& advice) {
+    now_ += milliseconds(5);  // the budget is 200 a second
+    Send(1, advice);
+    node_.Advance(now_);
   }
   Code CodeFor(const advice_t& advice) {
     verdicts_.clear();
@@ -389,7 +395,7 @@ TEST_F(VerifierNodeTest, NoNameKeepsTheGateFromSpeaking) {
 
 TEST_F(VerifierNodeTest, MalformedAdviceIsCountedAndHidesNoTroubleWithTheMap) {
   const std::vector<std::uint8_t> garbage(40, 7);
-  node_.OnAdviceBytes(garbage, now_);
+  node_.OnAdviceBytes(1, garbage, now_);
   EXPECT_EQ(Counter("malformed_advice"), 1);
   EXPECT_NE(node_.last_error().find("advice"), std::string::npos);
   terra_msg::map_header_t header = bus::MakeMapHeader(Field());
@@ -397,9 +403,57 @@ TEST_F(VerifierNodeTest, MalformedAdviceIsCountedAndHidesNoTroubleWithTheMap) {
   header.seq = 1;
   header.width = -1;
   Hear(header);
-  node_.OnAdviceBytes(garbage, now_);
+  node_.OnAdviceBytes(1, garbage, now_);
   EXPECT_EQ(node_.last_error().find("advice"), std::string::npos);
   EXPECT_FALSE(node_.last_error().empty());
+}
+
+// The loop looks at the deployed bus between two calls of Advance.
+TEST_F(VerifierNodeTest, OneAdviceIsJudgedInATurnAndSendersTakeTurns) {
+  GetReady();
+  node_.Advance(now_);
+  Send(1, AdviceOf(kTop));
+  Send(1, AdviceOf(kTop));
+  advice_t other = AdviceOf(kTop);
+  other.session = 901;
+  Send(2, other);
+  EXPECT_TRUE(verdicts_.empty());
+  EXPECT_EQ(Counter("advice_waiting"), 3);
+  std::vector<std::int64_t> sessions;
+  for (std::size_t turn = 1; turn <= 3; ++turn) {
+    const bus::Time next = node_.Advance(now_);
+    ASSERT_EQ(verdicts_.size(), turn);
+    EXPECT_EQ(next <= now_, turn < 3) << "at once, while there is more";
+    sessions.push_back(verdicts_.back().advisor_session);
+  }
+  EXPECT_EQ(sessions, (std::vector<std::int64_t>{900, 901, 900}));
+}
+
+TEST_F(VerifierNodeTest, ARepeatTakesNobodysTurn) {
+  GetReady();
+  const advice_t advice = AdviceOf(kTop);
+  Advise(advice);
+  Send(1, advice);
+  EXPECT_EQ(Counter("repeats"), 1);
+  EXPECT_EQ(Counter("advice_waiting"), 0);
+}
+
+TEST_F(VerifierNodeTest, AReplayJudgesAdviceInOrderOfArrival) {
+  VerifierNode replay{{.session = kSession}, out_};
+  replay.ListenToAdvice();
+  const auto hear = [&](const auto& message) {
+    using T = std::decay_t<decltype(message)>;
+    replay.Receive({bus::MessageTraits<T>::kChannel, bus::Encode(message)},
+                   now_);
+  };
+  terra_msg::map_header_t header = bus::MakeMapHeader(Field());
+  header.session = 4;
+  header.seq = 1;
+  hear(header);
+  hear(testing::AllTiles(Field()));
+  hear(BaselineOf(1, kStraight));
+  hear(AdviceOf(kTop));
+  EXPECT_EQ(verdicts_.size(), 1u) << "before any turn";
 }
 
 TEST_F(VerifierNodeTest, TakesAdviceOffTheDeployedBusOnlyWhenTold) {
@@ -408,6 +462,7 @@ TEST_F(VerifierNodeTest, TakesAdviceOffTheDeployedBusOnlyWhenTold) {
   EXPECT_TRUE(verdicts_.empty());
   node_.ListenToAdvice();
   Hear(AdviceOf(kTop));
+  node_.Advance(now_);
   ASSERT_EQ(verdicts_.size(), 1u);
   EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_ACCEPTED);
 }

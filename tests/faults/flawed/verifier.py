@@ -28,7 +28,7 @@ NONE, BASELINE, CANDIDATE, HOLD = range(4)
 REPEAT_S, STATUS_S = 0.2, 1.0
 PER_SENDER, IN_ALL = 20, 200  # datagrams a second that are looked at
 MOST_BYTES = 60_000
-FLAWS = """none waits-for-advice no-geometry no-cost no-key no-attempts no-decoder no-framing
+FLAWS = """none waits-for-advice no-geometry no-cost no-key by-attempt no-decoder no-framing
 reads-all closes-early says-once returns-to-old no-request-from-baseline slow forgets no-digest
 names-any-map no-recheck dies-on-send-error ends-on-signal trusts-clock opens-files
 needs-memory one-planner half-alive ends-in-silence counts-no-loss no-size-limit
@@ -175,10 +175,12 @@ class Gate:
 
     def _advice(self, message):
         key = (message["advisor"], message["session"], message["attempt"], message["candidate"])
+        if not self.lacks("by-attempt"):
+            key += (message["kind"], *self._waypoints(message))
         if not self.baseline:
             return
         code = self._judge(message)
-        if code is None or (key in self.judged and not self.lacks("no-attempts")):
+        if code is None or key in self.judged:
             return
         self.judged[key] = True
         if len(self.judged) > 4096:

@@ -11,6 +11,7 @@
 #include "logger/audit.h"
 #include "logger/log_info.h"
 #include "logger/log_reader.h"
+#include "logger/log_rebase.h"
 #include "logger/report.h"
 #include "output/output_file.h"
 
@@ -201,6 +202,56 @@ void AddReport(CLI::App& log, int& exit_code) {
   });
 }
 
+struct RebaseArguments {
+  std::string file;
+  std::string out;
+  double max_gap_s = 5;
+};
+
+int RunRebase(const RebaseArguments& arguments) {
+  Result<logger::LogReader> reader = OpenWithEvents(arguments.file);
+  if (!reader) return Fail(reader.error());
+  Result<OutputFile> file = OutputFile::Create(arguments.out);
+  if (!file) return Fail(file.error());
+  const logger::RebasedLog rebased = logger::RebaseLog(
+      *reader, static_cast<std::int64_t>(1e6 * arguments.max_gap_s),
+      [&file](std::string_view bytes) {
+        file->Write(bytes);
+      });
+  if (!reader->read_error().empty()) {
+    return Fail({ErrorCode::kUnavailable,
+                 arguments.file + ": " + reader->read_error()});
+  }
+  if (const Status written = file->Finish(); !written) {
+    return Fail(written.error());
+  }
+  std::cout << rebased.events << " events, " << rebased.jumps
+            << " jumps of time taken out\n";
+  return kDone;
+}
+
+void AddRebase(CLI::App& log, int& exit_code) {
+  CLI::App& command = *log.add_subcommand(
+      "rebase",
+      "Write a log anew for players, without jumps of its clock: time never "
+      "goes back, and on by --max-gap at most from one event to the next. "
+      "Without the recorder's seals, which are of the old times");
+  const auto arguments = std::make_shared<RebaseArguments>();
+  command.add_option("file", arguments->file, "LCM event log")->required();
+  command.add_option("--out", arguments->out, "LCM event log to write")
+      ->required();
+  command
+      .add_option("--max-gap", arguments->max_gap_s,
+                  "The longest silence that is kept, in seconds")
+      ->check(CLI::Range(1e-3, 1e6));
+  command.footer(
+      "Example:\n  terra log rebase jumped.lcmlog --out even.lcmlog\n"
+      "  lcm-logplayer even.lcmlog");
+  command.callback([arguments, &exit_code] {
+    exit_code = RunRebase(*arguments);
+  });
+}
+
 }  // namespace
 
 void AddLogCommand(CLI::App& app, int& exit_code) {
@@ -209,6 +260,7 @@ void AddLogCommand(CLI::App& app, int& exit_code) {
   AddInfo(log, exit_code);
   AddAudit(log, exit_code);
   AddReport(log, exit_code);
+  AddRebase(log, exit_code);
 }
 
 }  // namespace terra::cli

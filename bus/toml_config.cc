@@ -1,6 +1,7 @@
 #include "bus/toml_config.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <istream>
 #include <memory>
@@ -9,8 +10,15 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+
+// toml++ 3.3 asserts, or assumes, some of what its input decides (what follows
+// the "[" of a section), and handles it all the same a few lines on.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(expression) static_cast<void>(0)
 #define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
 
 namespace terra::bus {
 namespace {

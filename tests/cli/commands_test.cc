@@ -352,6 +352,7 @@ TEST(TerraUsage, AConfigurationThatIsNoTomlIsRefusedWithItsLine) {
         Case{"stride = 50\nstride = 60\n", "line 2: this is no TOML"},
         Case{"\n[planner]\nstride = 50\n",
              "line 2: options stand in no section"},
+        Case{"[?]\n", "line 1: this is no TOML"},
         Case{"stride = 2026-12-01\n", "line 1: expected a string, a number"},
         Case{"[" + parts + "]\nstride = 50\n", "larger than 64 kB"},
         Case{"[" + parts.substr(0, 60'000) + "]\n", "line 1: no option has"},

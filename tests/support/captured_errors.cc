@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 namespace terra::testing {
-namespace {
 
 int TimesIn(const std::string& text, const std::string& what) {
   int times = 0;
@@ -18,8 +17,6 @@ int TimesIn(const std::string& text, const std::string& what) {
   }
   return times;
 }
-
-}  // namespace
 
 CapturedErrors::CapturedErrors() : standard_error_(dup(STDERR_FILENO)) {
   std::array<int, 2> ends{};

@@ -8,6 +8,9 @@
 
 namespace terra::testing {
 
+/// How often a text holds another.
+int TimesIn(const std::string& text, const std::string& what);
+
 /// What this process writes to standard error while the object lives: the log's
 /// lines, which a thread of the log's own writes some time after they were
 /// logged, and those of libraries. One at a time.

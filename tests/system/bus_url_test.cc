@@ -11,6 +11,7 @@
 
 #include "terrain/files/map_file.h"
 #include "tests/support/bar_map.h"
+#include "tests/support/captured_errors.h"
 #include "tests/support/child_process.h"
 #include "tests/support/tcpq_hub.h"
 #include "tests/support/temp_folder.h"
@@ -24,6 +25,7 @@ using testing::ChildProcess;
 using testing::ProgramPath;
 using testing::RunToEnd;
 using testing::TcpqHub;
+using testing::TimesIn;
 
 constexpr seconds kPatience = testing::BusPeer::kPatience;
 
@@ -67,15 +69,6 @@ class BusUrlTest : public ::testing::Test {
     processes_[program] = std::make_unique<ChildProcess>(options);
   }
 };
-
-int TimesIn(const std::string& text, const std::string& what) {
-  int times = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos;
-       at = text.find(what, at + 1)) {
-    ++times;
-  }
-  return times;
-}
 
 TEST_F(BusUrlTest, AHubThatGoesAwayTakesNoProcessWithIt) {
   std::optional<TcpqHub> hub(std::in_place);

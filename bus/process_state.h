@@ -8,6 +8,7 @@ namespace terra::bus {
 /// text may go on behind the word: "failing: cannot write ...".
 enum class ProcessState {
   kReady,    ///< Does its work, or would if there were any.
+  kWaiting,  ///< Is ready, and works as soon as something has happened.
   kWorking,  ///< Is at it now.
   kFailing,  ///< Cannot do it.
   kOther,    ///< Waits for something, or says what this program does not know.
@@ -16,6 +17,7 @@ enum class ProcessState {
 /// The one place that reads states from their text.
 constexpr ProcessState StateOf(std::string_view text) {
   const std::string_view word = text.substr(0, text.find_first_of(" :,"));
+  if (text.starts_with("ready: waiting")) return ProcessState::kWaiting;
   if (word == "ready") return ProcessState::kReady;
   if (word == "working") return ProcessState::kWorking;
   if (word == "failing") return ProcessState::kFailing;
@@ -24,7 +26,8 @@ constexpr ProcessState StateOf(std::string_view text) {
 
 /// Whether a process in this state does its work.
 constexpr bool DoesItsWork(ProcessState state) {
-  return state == ProcessState::kReady || state == ProcessState::kWorking;
+  return state == ProcessState::kReady || state == ProcessState::kWaiting ||
+         state == ProcessState::kWorking;
 }
 
 }  // namespace terra::bus

@@ -22,6 +22,7 @@
 #include "bus/event_loop.h"
 #include "bus/heartbeat.h"
 #include "tests/bus/sample_messages.h"
+#include "tests/support/test_bus.h"
 
 namespace terra::bus {
 namespace {
@@ -45,12 +46,20 @@ std::unique_ptr<Bus> OpenBus(const std::string& url) {
   return *std::move(bus);
 }
 
-class BusTest : public ::testing::TestWithParam<std::string> {};
+class BusTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::string url() const {
+    return GetParam() == "memq" ? "memq://" : udpm_.url();
+  }
+
+ private:
+  testing::TestBus udpm_;
+};
 
 TEST_P(BusTest, CarriesAMessageUnchanged) {
   const std::vector<Channel> channels = {Channel::kPose, Channel::kBaseline};
   Inbox inbox;
-  const auto bus = OpenBus(GetParam());
+  const auto bus = OpenBus(url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   Outbox out(*bus, 7);
   auto sent = testing::Sample<terra_msg::baseline_t>();
@@ -62,7 +71,7 @@ TEST_P(BusTest, CarriesAMessageUnchanged) {
 }
 
 TEST_P(BusTest, RefusesMessagesAboveTheLimit) {
-  const auto bus = OpenBus(GetParam());
+  const auto bus = OpenBus(url());
   EXPECT_TRUE(
       bus->Publish(Channel::kLog, std::vector<std::uint8_t>(kMaxMessageBytes)));
   EXPECT_FALSE(bus->Publish(Channel::kLog,
@@ -73,7 +82,7 @@ TEST_P(BusTest, RefusesMessagesAboveTheLimit) {
 TEST_P(BusTest, KeepsTheOrderOfABurst) {
   const std::vector<Channel> channels = {Channel::kPose};
   Inbox inbox;
-  const auto bus = OpenBus(GetParam());
+  const auto bus = OpenBus(url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   Outbox out(*bus, 7);
   for (int i = 0; i < 100; ++i) {
@@ -92,13 +101,13 @@ TEST_P(BusTest, KeepsTheOrderOfABurst) {
 // reports a race there. No process uses that provider with two threads.
 const std::vector<std::string> kProviders = {
 #ifndef __SANITIZE_THREAD__
-    "memq://",
+    "memq",
 #endif
-    "udpm://239.255.76.67:17600?ttl=0"};
+    "udpm"};
 
 INSTANTIATE_TEST_SUITE_P(Providers, BusTest, ::testing::ValuesIn(kProviders),
                          [](const auto& tested) {
-                           return tested.param.substr(0, 4);
+                           return tested.param;
                          });
 
 void SendRaw(int port, const std::vector<std::uint8_t>& datagram) {
@@ -140,13 +149,14 @@ std::vector<std::uint8_t> Fragment(std::uint16_t index, std::uint32_t offset) {
 TEST(BusDatagramTest, NoFragmentEndsTheProcess) {
   const std::vector<Channel> channels = {Channel::kPose};
   Inbox inbox;
-  const auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  const testing::TestBus test_bus;
+  const auto bus = OpenBus(test_bus.url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   for (int i = 0; i < 20; ++i) {
-    SendRaw(17604, Fragment(0, 0));
-    SendRaw(17604, Fragment(1, 0xffffff00));
+    SendRaw(test_bus.port(), Fragment(0, 0));
+    SendRaw(test_bus.port(), Fragment(1, 0xffffff00));
   }
-  SendRaw(17604, {'L', 'C', '0', '2'});
+  SendRaw(test_bus.port(), {'L', 'C', '0', '2'});
   Outbox out(*bus, 7);
   auto pose = testing::Sample<terra_msg::pose_t>();
   ASSERT_TRUE(out.Send(pose));
@@ -163,11 +173,12 @@ TEST(BusDatagramTest, NoFragmentEndsTheProcess) {
 TEST(BusDatagramTest, ManyThousandPacketsLeaveTheThreadItsEnd) {
   const std::vector<Channel> channels = {Channel::kPose};
   Inbox inbox;
-  auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  const testing::TestBus test_bus;
+  auto bus = OpenBus(test_bus.url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   std::atomic<bool> ended = false;
   std::thread flooder([&ended] {
-    while (!ended) SendRaw(17604, Fragment(1, 0));
+    while (!ended) SendRaw(test_bus.port(), Fragment(1, 0));
   });
   bus.reset();  // Joins the thread that reads.
   ended = true;
@@ -250,7 +261,8 @@ class EchoNode : public Node {
 TEST(EventLoopTest, HandsMessagesFromAnotherThreadToTheNode) {
   const StopSignal stop;
   Inbox inbox;
-  const auto bus = OpenBus("udpm://239.255.76.67:17604?ttl=0");
+  const testing::TestBus test_bus;
+  const auto bus = OpenBus(test_bus.url());
   EchoNode node;
   ASSERT_TRUE(bus->Listen(node.channels(), inbox).ok());
   EventLoop loop(inbox, stop);

@@ -96,6 +96,9 @@ TEST(AdvisorWatchTest, AFloodOfNamesIsBoundedAndFitForATerminal) {
 TEST(ProcessState, IsReadFromTheFirstWordOfItsText) {
   using bus::ProcessState;
   EXPECT_EQ(bus::StateOf("ready"), ProcessState::kReady);
+  EXPECT_EQ(bus::StateOf("ready: waiting for the robot"),
+            ProcessState::kWaiting);
+  EXPECT_TRUE(bus::DoesItsWork(ProcessState::kWaiting));
   EXPECT_EQ(bus::StateOf("working"), ProcessState::kWorking);
   EXPECT_EQ(bus::StateOf("failing: breaker open"), ProcessState::kFailing);
   EXPECT_EQ(bus::StateOf("failing"), ProcessState::kFailing);

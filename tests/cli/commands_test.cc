@@ -255,8 +255,8 @@ TEST_F(TerraCommand, AForeignLogIsNothingToAudit) {
 }
 
 TEST_F(TerraCommand, ANameThatIsNoUtf8StandsInTheJsonOfAPrompt) {
-  const RunResult run =
-      OnMap({"prompt", "--json", "--out", folder_.Path("question\xFF")});
+  const RunResult run = OnMap({"prompt", "--json", "--stride", "2", "--out",
+                               folder_.Path("question\xFF")});
   ASSERT_EQ(run.exit_code, 0) << run.output;
   EXPECT_THAT(run.output, HasSubstr("question\uFFFD\""));
 }

@@ -82,13 +82,12 @@ void AdvisorNode::OnPose(const pose_t& message, bus::Time now) {
 }
 
 void AdvisorNode::OnVerdict(const verdict_t& message, bus::Time now) {
-  const bool own = message.subject == verdict_t::SUBJECT_ADVICE &&
-                   message.advisor == name_ &&
-                   message.advisor_session == out_.session() &&
-                   message.attempt == jobs_ &&
-                   message.anchor_session == anchor_.session &&
-                   message.anchor_route_seq == anchor_.route_seq &&
-                   message.anchor_index == anchor_.index;
+  const bool own =
+      message.subject == verdict_t::SUBJECT_ADVICE &&
+      message.advisor == name_ && message.advisor_session == out_.session() &&
+      message.attempt == jobs_ && message.anchor_session == anchor_.session &&
+      message.anchor_route_seq == anchor_.route_seq &&
+      message.anchor_index == anchor_.index;
   if (!own || message.code != verdict_t::CODE_LATE) return;
   if (work_ != Work::kAnswered || again_at_ != bus::kNever) return;
   again_at_ = now + kAgainAfter;

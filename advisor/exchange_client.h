@@ -18,8 +18,9 @@ struct ExchangeOptions {
 /// CASE-HASH, with prompt.txt and image-1.png, ...; answer.txt in it is the
 /// answer. It is read once it is there and has stopped growing (or was renamed
 /// into place); one that holds nothing but white space, or is no regular file,
-/// is waited for, which is said once on standard error. A question that has its answer already is not
-/// asked again. README.txt in the folder says all this to whoever answers.
+/// is waited for, which is said once on standard error. A question that has its
+/// answer already is not asked again. README.txt in the folder says all this to
+/// whoever answers.
 class ExchangeClient : public LlmClient {
  public:
   explicit ExchangeClient(ExchangeOptions options);

@@ -16,9 +16,8 @@ inline CLI::Validator InRange(double low, double high) {
             value <= high) {
           return {};
         }
-        return text + " is not a number from " +
-               CLI::detail::to_string(low) + " to " +
-               CLI::detail::to_string(high);
+        return text + " is not a number from " + CLI::detail::to_string(low) +
+               " to " + CLI::detail::to_string(high);
       },
       "", "number");
   validator.description("in [" + CLI::detail::to_string(low) + " - " +

@@ -16,8 +16,8 @@ namespace terra::bus {
 ///
 /// A layout lists the fields in order, blanks are free: l int64, i int32,
 /// h int16, b int8 or byte, d double, s string, s63 a string of at most 63
-/// bytes; N512 is a count (int32) of at most 512, and N one of at most the bytes
-/// that follow it; a star after a field repeats it by the last count.
+/// bytes; N512 is a count (int32) of at most 512, and N one of at most the
+/// bytes that follow it; a star after a field repeats it by the last count.
 template <typename T>
 struct MessageTraits;
 

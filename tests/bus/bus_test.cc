@@ -177,7 +177,7 @@ TEST(BusDatagramTest, ManyThousandPacketsLeaveTheThreadItsEnd) {
   auto bus = OpenBus(test_bus.url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   std::atomic<bool> ended = false;
-  std::thread flooder([&ended] {
+  std::thread flooder([&ended, &test_bus] {
     while (!ended) SendRaw(test_bus.port(), Fragment(1, 0));
   });
   bus.reset();  // Joins the thread that reads.

@@ -7,26 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "bus/channel_list.h"
 #include "terrain/result.h"
 
 namespace terra::bus {
-
-/// Every channel of the project; one message type each (lcmtypes/).
-enum class Channel {
-  kMapHeader,
-  kMapTile,
-  kMapRequest,
-  kPlanRequest,
-  kBaseline,
-  kAdvice,
-  kVerdict,
-  kDeployed,
-  kPose,
-  kStatus,
-  kConfig,
-  kLog,
-};
-inline constexpr int kNumChannels = 12;
 
 /// No message is larger: one UDP datagram carries it whole, so that it arrives
 /// whole or not at all.
@@ -34,13 +18,8 @@ inline constexpr std::size_t kMaxMessageBytes = 60'000;
 /// Waypoints of a route and steps of its dense cells on the bus.
 inline constexpr std::size_t kMaxWaypoints = 2'048;
 inline constexpr std::int64_t kMaxSteps = 80'000;
-inline constexpr std::size_t kMaxAnswerBytes = 16'000;
 /// Names of processes, advisors, methods, models.
 inline constexpr std::size_t kMaxNameBytes = 63;
-/// States and errors, one line each.
-inline constexpr std::size_t kMaxErrorBytes = 1'000;
-/// Configurations and notes in a log.
-inline constexpr std::size_t kMaxConfigBytes = 16'000;
 /// LCM takes channel names up to this length.
 inline constexpr std::size_t kMaxChannelBytes = 63;
 

@@ -8,23 +8,20 @@
 #include <vector>
 
 #include "bus/channels.h"
+#include "bus/message_schema.h"
 #include "terrain/result.h"
 
 namespace terra::bus {
-
-/// The channel and layout of a message type; specialised in bus/messages.h.
-///
-/// A layout lists the fields in order, blanks are free: l int64, i int32,
-/// h int16, b int8 or byte, d double, s string, s63 a string of at most 63
-/// bytes; N512 is a count (int32) of at most 512, and N one of at most the
-/// bytes that follow it; a star after a field repeats it by the last count.
-template <typename T>
-struct MessageTraits;
 
 /// Checks encoded bytes before generated code may see them: the fingerprint,
 /// every count against its limit and the bytes left, every string's length and
 /// end, and that nothing is left over. Generated decode aborts or allocates
 /// without bound on bytes that break these rules.
+///
+/// A layout lists the fields in order, blanks are free: l int64, i int32,
+/// h int16, b int8 or byte, d double, s string, s63 a string of at most 63
+/// bytes; N512 is a count (int32) of at most 512, and N one of at most the
+/// bytes that follow it; a star after a field repeats it by the last count.
 Status CheckLayout(std::string_view layout, std::int64_t fingerprint,
                    std::span<const std::uint8_t> bytes);
 

@@ -6,7 +6,7 @@ class App;
 
 namespace terra::cli {
 
-/// One function per subcommand of `terra`, each in its own <name>_command.cc.
+/// One function per subcommand of `terra`, each in its own NAME_command.cc.
 /// It adds the subcommand with its options and an example, and a callback that
 /// runs it and sets the exit code: 0 done, 1 could not (reason on stderr).
 /// Wrong usage (exit 2) is a CLI::ParseError, thrown while options are read.

@@ -34,6 +34,11 @@ if(TERRA_SANITIZE)
   target_link_options(terra_flags INTERFACE -fsanitize=${TERRA_SANITIZE})
 endif()
 
+if(TERRA_COVERAGE)
+  target_compile_options(terra_flags INTERFACE --coverage -fno-inline)
+  target_link_options(terra_flags INTERFACE --coverage)
+endif()
+
 # terra_library(NAME SRCS a.cc b.cc [DEPS other_library ...])
 # One static library per folder; DEPS are public.
 function(terra_library name)

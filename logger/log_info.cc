@@ -24,33 +24,13 @@ bool IsWellFormed(std::span<const std::uint8_t> data) {
 }
 
 bool IsWellFormed(bus::Channel channel, std::span<const std::uint8_t> data) {
-  switch (channel) {
-    case bus::Channel::kMapHeader:
-      return IsWellFormed<terra_msg::map_header_t>(data);
-    case bus::Channel::kMapTile:
-      return IsWellFormed<terra_msg::map_tile_t>(data);
-    case bus::Channel::kMapRequest:
-      return IsWellFormed<terra_msg::map_request_t>(data);
-    case bus::Channel::kPlanRequest:
-      return IsWellFormed<terra_msg::plan_request_t>(data);
-    case bus::Channel::kBaseline:
-      return IsWellFormed<terra_msg::baseline_t>(data);
-    case bus::Channel::kAdvice:
-      return IsWellFormed<terra_msg::advice_t>(data);
-    case bus::Channel::kVerdict:
-      return IsWellFormed<terra_msg::verdict_t>(data);
-    case bus::Channel::kDeployed:
-      return IsWellFormed<terra_msg::deployed_t>(data);
-    case bus::Channel::kPose:
-      return IsWellFormed<terra_msg::pose_t>(data);
-    case bus::Channel::kStatus:
-      return IsWellFormed<terra_msg::status_t>(data);
-    case bus::Channel::kConfig:
-      return IsWellFormed<terra_msg::config_t>(data);
-    case bus::Channel::kLog:
-      return IsWellFormed<log_mark_t>(data);
-  }
-  return false;
+  bool well_formed = false;
+  bus::ForEachMessageType([&]<typename T>() {
+    if (bus::MessageTraits<T>::kChannel == channel) {
+      well_formed = IsWellFormed<T>(data);
+    }
+  });
+  return well_formed;
 }
 
 // Counts what is missing in each sender's numbers, channel by channel.

@@ -36,6 +36,7 @@ as_root() {
 # missing_packages GROUP: those of its packages that are not installed, one a line.
 missing_packages() {
   local package
+  # shellcheck disable=SC2013  # Names of packages are words.
   for package in $(awk -v group="$1" '$1 == group { print $2 }' \
     "$root/scripts/packages"); do
     # (A line for each architecture that it is known for.)

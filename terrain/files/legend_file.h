@@ -8,7 +8,7 @@
 namespace terra {
 
 /// Returns the built-in legend of that name, else reads it as a CSV file:
-/// header `id,name,cost,color`, cost a number or `inf`, colour #RRGGBB.
+/// header `id,name,cost,color`, cost a number or `inf`, colour `#RRGGBB`.
 /// Errors: name the file and line, or the built-in names.
 Result<Legend> ReadLegend(const std::string& name_or_path);
 

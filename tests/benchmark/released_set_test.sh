@@ -7,6 +7,7 @@ terra=$1 changelog=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
+# shellcheck disable=SC2016  # The backquotes are Markdown's.
 recorded=$(sed -n 's/^| dataset `multiterrapath-like` | 1,.*digest `\([0-9a-f]\{64\}\)`.*/\1/p' "$changelog")
 [ -n "$recorded" ] || { echo "no digest of v1 in $changelog"; exit 1; }
 "$terra" bench generate --paper --out "$folder/v1" | tee "$folder/said"

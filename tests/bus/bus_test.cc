@@ -21,7 +21,7 @@
 #include "bus/envelope.h"
 #include "bus/event_loop.h"
 #include "bus/heartbeat.h"
-#include "tests/bus/sample_messages.h"
+#include "tests/filled_messages.h"
 #include "tests/support/test_bus.h"
 
 namespace terra::bus {
@@ -62,7 +62,7 @@ TEST_P(BusTest, CarriesAMessageUnchanged) {
   const auto bus = OpenBus(url());
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   Outbox out(*bus, 7);
-  auto sent = testing::Sample<terra_msg::baseline_t>();
+  auto sent = testing::FilledMessage<terra_msg::baseline_t>();
   ASSERT_TRUE(out.Send(sent));
   const std::optional<RawMessage> got = Next(inbox);
   ASSERT_TRUE(got.has_value());
@@ -86,7 +86,7 @@ TEST_P(BusTest, KeepsTheOrderOfABurst) {
   ASSERT_TRUE(bus->Listen(channels, inbox).ok());
   Outbox out(*bus, 7);
   for (int i = 0; i < 100; ++i) {
-    auto pose = testing::Sample<terra_msg::pose_t>();
+    auto pose = testing::FilledMessage<terra_msg::pose_t>();
     out.Send(pose);
   }
   for (std::int64_t seq = 1; seq <= 100; ++seq) {
@@ -158,7 +158,7 @@ TEST(BusDatagramTest, NoFragmentEndsTheProcess) {
   }
   SendRaw(test_bus.port(), {'L', 'C', '0', '2'});
   Outbox out(*bus, 7);
-  auto pose = testing::Sample<terra_msg::pose_t>();
+  auto pose = testing::FilledMessage<terra_msg::pose_t>();
   ASSERT_TRUE(out.Send(pose));
   ASSERT_TRUE(Next(inbox).has_value());
   // A batch is counted when all of it was handed over.
@@ -268,7 +268,7 @@ TEST(EventLoopTest, HandsMessagesFromAnotherThreadToTheNode) {
   EventLoop loop(inbox, stop);
   std::thread sender([&] {
     Outbox out(*bus, 7);
-    auto pose = testing::Sample<terra_msg::pose_t>();
+    auto pose = testing::FilledMessage<terra_msg::pose_t>();
     out.Send(pose);
   });
   loop.Run(node);
@@ -358,9 +358,9 @@ TEST(EventLoopTest, LooksAfterEveryTurnAndWakesForIt) {
 TEST(NodeTest, CountsWhatDoesNotDecode) {
   EchoNode node;
   node.Receive(RawMessage{Channel::kPose, {1, 2, 3}}, Clock::now());
-  node.Receive(
-      RawMessage{Channel::kPose, Encode(testing::Sample<terra_msg::pose_t>())},
-      Clock::now());
+  node.Receive(RawMessage{Channel::kPose,
+                          Encode(testing::FilledMessage<terra_msg::pose_t>())},
+               Clock::now());
   Counters counters;
   node.AddCounters(counters);
   EXPECT_EQ(counters, (Counters{{"received", 2}, {"malformed", 1}}));

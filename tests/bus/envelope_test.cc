@@ -2,12 +2,14 @@
 
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "bus/message_texts.h"
 #include "terrain/utf8.h"
-#include "tests/bus/sample_messages.h"
+#include "tests/filled_messages.h"
 
 namespace terra::bus {
 namespace {
@@ -100,61 +102,39 @@ void ExpectClean(const std::string& text) {
   EXPECT_EQ(text.find('\0'), std::string::npos);
 }
 
-// Whatever a model, a file or another process says, it can be told.
-TEST(OutboxTest, NoTextMakesAdviceUnfitToBeSent) {
-  auto message = testing::Sample<terra_msg::advice_t>();
-  message.advisor = message.method = message.backend = message.model =
-      message.request_hash = message.answer_text = message.advice_error =
-          Hostile();
-  const auto heard = Heard(message);
-  for (const std::string& text :
-       {heard.advisor, heard.method, heard.backend, heard.model,
-        heard.request_hash, heard.answer_text, heard.advice_error}) {
-    ExpectClean(text);
-  }
-  EXPECT_LE(heard.model.size(), kMaxNameBytes);
-  EXPECT_LE(heard.answer_text.size(), kMaxAnswerBytes);
+// Calls visit(text, form, most bytes) for each text, those in lists too.
+template <typename Message, typename Visit>
+void EachSingleText(Message& message, Visit visit) {
+  MessageTraits<Message>::EachText(
+      message, [&](auto& texts, TextForm form, std::size_t max_bytes) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(texts)>,
+                                     std::string>) {
+          visit(texts, form, max_bytes);
+        } else {
+          for (auto& text : texts) visit(text, form, max_bytes);
+        }
+      });
 }
 
-TEST(OutboxTest, NoTextMakesAnyOtherMessageUnfitToBeSent) {
-  auto status = testing::Sample<terra_msg::status_t>();
-  status.status_name = status.host = status.state = status.build_id =
-      status.last_error = status.counter_name.front() = Hostile();
-  const auto status_heard = Heard(status);
-  ExpectClean(status_heard.status_name);
-  ExpectClean(status_heard.host);
-  ExpectClean(status_heard.state);
-  ExpectClean(status_heard.build_id);
-  ExpectClean(status_heard.last_error);
-  ExpectClean(status_heard.counter_name.front());
-  EXPECT_EQ(status_heard.state.find('\n'), std::string::npos);
-
-  auto config = testing::Sample<terra_msg::config_t>();
-  config.config_name = config.build_id = config.config_text = Hostile();
-  const auto config_heard = Heard(config);
-  ExpectClean(config_heard.config_name);
-  ExpectClean(config_heard.build_id);
-  ExpectClean(config_heard.config_text);
-
-  auto header = testing::Sample<terra_msg::map_header_t>();
-  header.terrain_name.front() = Hostile();
-  ExpectClean(Heard(header).terrain_name.front());
-
-  auto mark = testing::Sample<terra_msg::log_mark_t>();
-  mark.mark_text = Hostile();
-  ExpectClean(Heard(mark).mark_text);
-
-  auto baseline = testing::Sample<terra_msg::baseline_t>();
-  baseline.planner = Hostile();
-  ExpectClean(Heard(baseline).planner);
-
-  auto verdict = testing::Sample<terra_msg::verdict_t>();
-  verdict.advisor = Hostile();
-  ExpectClean(Heard(verdict).advisor);
-
-  auto deployed = testing::Sample<terra_msg::deployed_t>();
-  deployed.source = Hostile();
-  ExpectClean(Heard(deployed).source);
+// Whatever a model, a file or another process says, it can be told.
+TEST(OutboxTest, NoTextMakesAMessageUnfitToBeSent) {
+  int texts = 0;
+  ForEachMessageType([&]<typename T>() {
+    SCOPED_TRACE(T::getTypeName());
+    auto message = testing::FilledMessage<T>();
+    EachSingleText(message, [](std::string& text, auto...) {
+      text = Hostile();
+    });
+    const T heard = Heard(message);
+    EachSingleText(heard, [&](const std::string& text, TextForm form,
+                              std::size_t max_bytes) {
+      ++texts;
+      ExpectClean(text);
+      EXPECT_LE(text.size(), max_bytes);
+      EXPECT_EQ(text.find('\n') != std::string::npos, form == TextForm::kBlock);
+    });
+  });
+  EXPECT_GE(texts, 20);
 }
 
 TEST(RandomIdTest, IsNeverZeroAndDiffers) {

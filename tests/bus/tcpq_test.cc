@@ -22,7 +22,7 @@
 #include "bus/lcm_link.h"
 #include "bus/log.h"
 #include "bus/time.h"
-#include "tests/bus/sample_messages.h"
+#include "tests/filled_messages.h"
 #include "tests/support/captured_errors.h"
 #include "tests/support/tcpq_hub.h"
 #include "tests/support/temp_folder.h"
@@ -56,7 +56,7 @@ class TcpqTest : public ::testing::Test {
   }
 
   bool Say() {
-    auto pose = testing::Sample<terra_msg::pose_t>();
+    auto pose = testing::FilledMessage<terra_msg::pose_t>();
     return Outbox(*says_, 7).Send(pose);
   }
   // Whether a message comes through, said again and again.
@@ -223,7 +223,7 @@ TEST_F(TcpqTest, ALogThatWasPlayedToItsEndCostsNothing) {
   const std::string url = "file://" + folder.Path("a.log");
   {
     const auto writes = OpenBus(url + "?mode=w");
-    auto pose = testing::Sample<terra_msg::pose_t>();
+    auto pose = testing::FilledMessage<terra_msg::pose_t>();
     ASSERT_TRUE(Outbox(*writes, 7).Send(pose));
   }
   CapturedErrors errors;

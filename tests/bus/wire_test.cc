@@ -12,15 +12,15 @@
 #include <sys/mman.h>
 
 #include "bus/messages.h"
-#include "tests/bus/sample_messages.h"
+#include "tests/filled_messages.h"
 #include "tests/support/random_map.h"
 
 namespace terra::bus {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+using ::terra::testing::FilledMessage;
 using ::terra::testing::Random;
-using ::terra::testing::StampedSample;
 
 template <typename T>
 class EveryMessageTypeTest : public ::testing::Test {};
@@ -32,11 +32,7 @@ struct TypeNames {
   }
 };
 
-using AllTypes = ::testing::Types<
-    terra_msg::map_header_t, terra_msg::map_tile_t, terra_msg::map_request_t,
-    terra_msg::plan_request_t, terra_msg::baseline_t, terra_msg::advice_t,
-    terra_msg::verdict_t, terra_msg::deployed_t, terra_msg::pose_t,
-    terra_msg::status_t, terra_msg::config_t, terra_msg::log_mark_t>;
+using AllTypes = AllMessageTypes<::testing::Types>;
 TYPED_TEST_SUITE(EveryMessageTypeTest, AllTypes, TypeNames);
 
 // The bytes that logs and other programs hold. They change only with a type,
@@ -45,7 +41,7 @@ TYPED_TEST_SUITE(EveryMessageTypeTest, AllTypes, TypeNames);
 TYPED_TEST(EveryMessageTypeTest, EncodesToItsGoldenBytes) {
   const std::string path = std::string(TERRA_GOLDEN_FOLDER) + "/" +
                            TypeParam::getTypeName() + ".bin";
-  const Bytes bytes = Encode(StampedSample<TypeParam>());
+  const Bytes bytes = Encode(FilledMessage<TypeParam>());
   if (std::getenv("TERRA_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
@@ -58,27 +54,27 @@ TYPED_TEST(EveryMessageTypeTest, EncodesToItsGoldenBytes) {
 }
 
 TYPED_TEST(EveryMessageTypeTest, ComesBackEqualFromItsBytes) {
-  const Bytes bytes = Encode(StampedSample<TypeParam>());
+  const Bytes bytes = Encode(FilledMessage<TypeParam>());
   const Result<TypeParam> decoded = Decode<TypeParam>(bytes);
   ASSERT_TRUE(decoded.ok()) << decoded.error().message;
   EXPECT_EQ(Encode(*decoded), bytes);
 }
 
 TYPED_TEST(EveryMessageTypeTest, IsRefusedWhenCutAnywhere) {
-  const Bytes bytes = Encode(StampedSample<TypeParam>());
+  const Bytes bytes = Encode(FilledMessage<TypeParam>());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_FALSE(Decode<TypeParam>(std::span(bytes).first(size)).ok()) << size;
   }
 }
 
 TYPED_TEST(EveryMessageTypeTest, IsRefusedWithBytesTooMany) {
-  Bytes bytes = Encode(StampedSample<TypeParam>());
+  Bytes bytes = Encode(FilledMessage<TypeParam>());
   bytes.push_back(0);
   EXPECT_FALSE(Decode<TypeParam>(bytes).ok());
 }
 
 TYPED_TEST(EveryMessageTypeTest, IsRefusedWithAnotherFingerprint) {
-  Bytes bytes = Encode(StampedSample<TypeParam>());
+  Bytes bytes = Encode(FilledMessage<TypeParam>());
   bytes[3] ^= 1;
   EXPECT_FALSE(Decode<TypeParam>(bytes).ok());
 }
@@ -86,7 +82,7 @@ TYPED_TEST(EveryMessageTypeTest, IsRefusedWithAnotherFingerprint) {
 // Any four bytes may be a count or a length: whatever is written over them, the
 // decoder neither crashes nor takes memory for it (LCM's own does both).
 TYPED_TEST(EveryMessageTypeTest, SurvivesHostileCountsEverywhere) {
-  const Bytes good = Encode(StampedSample<TypeParam>());
+  const Bytes good = Encode(FilledMessage<TypeParam>());
   const std::vector<std::uint32_t> hostile = {
       0, 1, 0xFFFFFFFF, 0xFFFFFFFB, 0x7FFFFFFF, 200'000'000, 2049, 0x80000000};
   for (std::size_t at = 8; at + 4 <= good.size(); ++at) {
@@ -104,7 +100,7 @@ TYPED_TEST(EveryMessageTypeTest, SurvivesHostileCountsEverywhere) {
 }
 
 TYPED_TEST(EveryMessageTypeTest, SurvivesRandomDamage) {
-  const Bytes good = Encode(StampedSample<TypeParam>());
+  const Bytes good = Encode(FilledMessage<TypeParam>());
   Random random(7);
   const int size = static_cast<int>(good.size());
   for (int i = 0; i < 2000; ++i) {
@@ -148,7 +144,7 @@ class BytesAtTheEnd {
 };
 
 TYPED_TEST(EveryMessageTypeTest, NothingIsReadBeyondACut) {
-  const Bytes whole = Encode(StampedSample<TypeParam>());
+  const Bytes whole = Encode(FilledMessage<TypeParam>());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const BytesAtTheEnd cut(std::span<const std::uint8_t>(whole).first(size));
     EXPECT_FALSE(CheckLayout(MessageTraits<TypeParam>::kLayout,

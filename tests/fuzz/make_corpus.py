@@ -2,13 +2,13 @@
 """Writes the seed inputs of the fuzz targets to corpus/ (they are committed)."""
 import pathlib
 import struct
+import sys
 import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 GOLDEN = HERE.parent / "bus" / "golden"
-TYPES = ["map_header", "map_tile", "map_request", "plan_request", "baseline",
-         "advice", "verdict", "deployed", "pose", "status", "config",
-         "log_mark"]
+sys.path.insert(0, str(HERE.parents[1] / "lcmtypes"))
+import schema  # noqa: E402
 
 
 def save(target, name, data):
@@ -52,9 +52,9 @@ def png(width, height, color, rows, depth=8, interlace=0, extra=b""):
             chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
 
 
-for number, name in enumerate(TYPES):
-    save("messages", name, bytes([number]) +
-         (GOLDEN / (name + "_t.bin")).read_bytes())
+for number, name in enumerate(schema.ORDER):
+    save("messages", name.removesuffix("_t"), bytes([number]) +
+         (GOLDEN / (name + ".bin")).read_bytes())
 
 save("advice", "better", datagram(advice([(1, 1), (2, 0), (13, 0), (14, 9)])))
 save("advice", "ahead", datagram(advice([(1, 5), (1, 8), (2, 9), (14, 9)],
@@ -175,9 +175,8 @@ def event(number, channel, data):
 
 
 LOG = b"".join(
-    event(number, "TERRA_" + name.upper().removesuffix("_MARK"),
-          (GOLDEN / (name + "_t.bin")).read_bytes())
-    for number, name in enumerate(TYPES))
+    event(number, message.channel, (GOLDEN / (message.name + ".bin")).read_bytes())
+    for number, message in enumerate(schema.all_messages()))
 save("logs", "one_of_each", LOG)
 save("logs", "torn", LOG[:-40])
 save("logs", "damaged", LOG[:300] + b"\0\1\2" + LOG[310:])

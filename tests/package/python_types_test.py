@@ -10,7 +10,8 @@ import sys
 
 sys.path.insert(0, sys.argv[1])
 golden = sorted(pathlib.Path(sys.argv[2]).glob("*.bin"))
-assert len(golden) == 12, f"12 message types, {len(golden)} golden messages"
+types = {path.stem for path in pathlib.Path(sys.argv[1], "terra_msg").glob("*_t.py")}
+assert types == {path.stem for path in golden}, "each type has a golden message"
 for path in golden:
     module = importlib.import_module("terra_msg." + path.stem)
     message = getattr(module, path.stem).decode(path.read_bytes())

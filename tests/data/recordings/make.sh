@@ -13,7 +13,7 @@ rm -f "$here/advisor-32.jsonl"
 run=$!
 while kill -0 $run 2>/dev/null; do
   for folder in "$work"/exchange/*/; do
-    [ -e "$folder/prompt.txt" ] && [ ! -e "$folder/answer.txt" ] || continue
+    if [ ! -e "$folder/prompt.txt" ] || [ -e "$folder/answer.txt" ]; then continue; fi
     question=$(basename "$folder")
     cp "$answers/answers/native/${question%-*}.txt" "$folder/part"
     mv "$folder/part" "$folder/answer.txt"

@@ -105,7 +105,7 @@ void ExpectClean(const std::string& text) {
 // Calls visit(text, form, most bytes) for each text, those in lists too.
 template <typename Message, typename Visit>
 void EachSingleText(Message& message, Visit visit) {
-  MessageTraits<Message>::EachText(
+  MessageTraits<std::remove_const_t<Message>>::EachText(
       message, [&](auto& texts, TextForm form, std::size_t max_bytes) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(texts)>,
                                      std::string>) {

@@ -18,7 +18,8 @@ using testing::TempFolder;
 
 // The pool that comes along, cut after so many pairs.
 std::string PoolOf(int pairs) {
-  const std::string whole = ReferencePool::Builtin().Serialize();
+  // Once: packing the maps as small as they get takes seconds.
+  static const std::string whole = ReferencePool::Builtin().Serialize();
   std::size_t end = 0;
   for (int line = 0; line <= pairs; ++line) end = whole.find('\n', end) + 1;
   return whole.substr(0, end);

@@ -34,9 +34,9 @@ void Gate::OnChange(RequestRule::Change change, Decisions& out) {
 
 Decisions Gate::On(const BaselineEvent& event) {
   Decisions out;
-  const RequestRule::Change change = requests_.OnAnswer(
-      {event.request_id, event.cancelled, 0, event.start, event.goal},
-      event.session);
+  const RequestInForce carried{event.request_id, event.cancelled, 0,
+                               event.start, event.goal};
+  const RequestRule::Change change = requests_.OnAnswer(carried, event.session);
   OnChange(change, out);
   if (change == RequestRule::Change::kOther) {
     ++counters_.other_baselines;

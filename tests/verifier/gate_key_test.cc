@@ -123,6 +123,16 @@ TEST(GateTest, ACopiedAttemptNumberSilencesNobody) {
   EXPECT_FALSE(h.gate.WouldJudge(honest)) << "has its verdict";
 }
 
+TEST(GateTest, AdviceThatHasNoVerdictIsNotJudged) {
+  GateHarness h = Ready();
+  AdviceEvent failed = h.AdviceOf(kTop);
+  failed.kind = AdviceKind::kFailed;
+  EXPECT_FALSE(h.gate.WouldJudge(failed));
+  AdviceEvent unknown = h.AdviceOf(kTop);
+  unknown.request_id += 1;
+  EXPECT_FALSE(h.gate.WouldJudge(unknown));
+}
+
 TEST(GateTest, AFloodDoesNotMakeRepeatedAdviceNew) {
   GateHarness h = Ready();
   const AdviceEvent steady = h.AdviceOf(kTop);

@@ -25,7 +25,15 @@ SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--
            "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
            # (libfaketime leaves its shared memory behind)
            ' && mount -t tmpfs tmpfs /dev/shm && exec "$@"', "row"]
-DOCS = HERE.parents[1] / "docs" / "faults.md"
+RESULTS = HERE.parents[1] / "docs" / "results"
+PAGES = {
+    "rows": ("faults.md", "The fault suite: every row", "scripts/faults --write-docs",
+             "[../faults.md](../faults.md) says how a row is run and judged."),
+    "mutants": ("fault-mutants.md", "The fault suite: every row can fail",
+                "scripts/faults --mutants --write-docs",
+                "Each row ran with something broken that it must notice, and with a stand-in "
+                "that lacks nothing (`none`), which must pass."),
+}
 ROW_TIMEOUT_S = 180
 SKIPPED = 77  # as CTest is told
 
@@ -71,16 +79,23 @@ def markdown(head, lines):
     return "".join("| " + " | ".join(line) + " |\n" for line in rows_of)
 
 
+def machine():
+    """When and on what the figures were made."""
+    names = [line.partition(": ")[2] for line in pathlib.Path("/proc/cpuinfo").read_text().split("\n")
+             if line.startswith("model name")]
+    return (f"{time.strftime('%Y-%m-%d')}, build `release`, {os.cpu_count()} cores "
+            f"({names[0] if names else 'unknown'}), {os.uname().sysname}.")
+
+
 def show_table(name, head, lines, arguments):
-    """Prints it, or puts it in its place in the docs."""
+    """Prints it, or writes its page of docs/results."""
     table = markdown(head, lines)
     if not arguments.write_docs:
         print(table, end="")
         return
-    text = DOCS.read_text()
-    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
-    before, _, rest = text.partition(begin)
-    DOCS.write_text(before + begin + table + rest[rest.index(end):])
+    file, title, command, text = PAGES[name]
+    (RESULTS / file).write_text(
+        f"# {title}\n\nWritten by `{command}`. {text}\n\n{machine()}\n\n{table}")
 
 
 def run_all(chosen, arguments):

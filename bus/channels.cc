@@ -10,7 +10,8 @@ constexpr std::array<std::string_view, kNumChannels> kBaseNames = {
     "TERRA_MAP_HEADER",   "TERRA_MAP_TILE", "TERRA_MAP_REQUEST",
     "TERRA_PLAN_REQUEST", "TERRA_BASELINE", "TERRA_ADVICE",
     "TERRA_VERDICT",      "TERRA_DEPLOYED", "TERRA_POSE",
-    "TERRA_STATUS",       "TERRA_CONFIG",   "TERRA_LOG"};
+    "TERRA_STATUS",       "TERRA_CONFIG",   "TERRA_LOG",
+    "TERRA_GATE_STEP"};
 
 constexpr std::size_t LongestName() {
   std::size_t longest = 0;

@@ -25,8 +25,9 @@ enum class Channel {
   kStatus,
   kConfig,
   kLog,
+  kGateStep,
 };
-inline constexpr int kNumChannels = 12;
+inline constexpr int kNumChannels = 13;
 
 /// No message is larger: one UDP datagram carries it whole, so that it arrives
 /// whole or not at all.

@@ -4,6 +4,7 @@
 #include "terra_msg/baseline_t.hpp"
 #include "terra_msg/config_t.hpp"
 #include "terra_msg/deployed_t.hpp"
+#include "terra_msg/gate_step_t.hpp"
 #include "terra_msg/log_mark_t.hpp"
 #include "terra_msg/map_header_t.hpp"
 #include "terra_msg/map_request_t.hpp"
@@ -47,6 +48,8 @@ TERRA_MESSAGE(pose_t, kPose, "lll ii dd ll")
 TERRA_MESSAGE(status_t, kStatus, "lll ss i ss N s*l* s")
 TERRA_MESSAGE(config_t, kConfig, "lll sss")
 TERRA_MESSAGE(log_mark_t, kLog, "lll b ii lll l s")
+TERRA_MESSAGE(gate_step_t, kGateStep,
+              "lll ll bb lll lblllll iiibdl l ll i ll l N59000 b*")
 
 #undef TERRA_MESSAGE
 

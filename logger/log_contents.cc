@@ -119,6 +119,7 @@ void LogContents::Take(const LogEvent& event, std::int64_t index) {
       return TakeAs<terra_msg::status_t>(event, index);
     case bus::Channel::kMapRequest:
     case bus::Channel::kLog:
+    case bus::Channel::kGateStep:
       return;
   }
 }

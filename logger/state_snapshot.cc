@@ -45,6 +45,7 @@ void StateSnapshot::Take(bus::Channel channel, const HeardEvent& event) {
     case bus::Channel::kMapRequest:
     case bus::Channel::kStatus:
     case bus::Channel::kLog:
+    case bus::Channel::kGateStep:
       return;
   }
 }

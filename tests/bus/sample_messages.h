@@ -224,6 +224,41 @@ inline terra_msg::log_mark_t Sample() {
   return m;
 }
 
+template <>
+inline terra_msg::gate_step_t Sample() {
+  terra_msg::gate_step_t m{};
+  m.step = 21;
+  m.now_us = 123'456'789;
+  m.kind = terra_msg::gate_step_t::KIND_ADVICE;
+  m.lookup = terra_msg::gate_step_t::LOOKUP_NEW;
+  m.event_session = 99;
+  m.event_seq = 12;
+  m.event_digest = -31;
+  m.request_id = 4242;
+  m.request_cancelled = 1;
+  m.answered_by = 98;
+  m.map_id = 0x0102030405060708;
+  m.baseline_digest = -77;
+  m.baseline_session = 97;
+  m.route_seq = 3;
+  m.place_x = 10;
+  m.place_y = 11;
+  m.place_index = 12;
+  m.place_on_route = 1;
+  m.place_speed = 0.75;
+  m.place_age_us = 1'300;
+  m.dwell_end_us = 123'999'999;
+  m.decision = 5;
+  m.core_before = -32;
+  m.num_decisions = 2;
+  m.decisions_digest = -33;
+  m.core_after = -34;
+  m.bytes_digest = -35;
+  m.num_bytes = 5;
+  m.event_bytes = {1, 2, 3, 4, 255};
+  return m;
+}
+
 /// The sample with an envelope.
 template <typename T>
 T StampedSample() {

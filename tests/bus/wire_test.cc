@@ -36,7 +36,8 @@ using AllTypes = ::testing::Types<
     terra_msg::map_header_t, terra_msg::map_tile_t, terra_msg::map_request_t,
     terra_msg::plan_request_t, terra_msg::baseline_t, terra_msg::advice_t,
     terra_msg::verdict_t, terra_msg::deployed_t, terra_msg::pose_t,
-    terra_msg::status_t, terra_msg::config_t, terra_msg::log_mark_t>;
+    terra_msg::status_t, terra_msg::config_t, terra_msg::log_mark_t,
+    terra_msg::gate_step_t>;
 TYPED_TEST_SUITE(EveryMessageTypeTest, AllTypes, TypeNames);
 
 // The bytes that logs and other programs hold. They change only with a type,

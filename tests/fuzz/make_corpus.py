@@ -8,7 +8,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 GOLDEN = HERE.parent / "bus" / "golden"
 TYPES = ["map_header", "map_tile", "map_request", "plan_request", "baseline",
          "advice", "verdict", "deployed", "pose", "status", "config",
-         "log_mark"]
+         "log_mark", "gate_step"]
 
 
 def save(target, name, data):

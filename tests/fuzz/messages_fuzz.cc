@@ -39,6 +39,7 @@ constexpr Checker kCheckers[] = {
     Check<terra_msg::verdict_t>,     CheckChain,
     Check<terra_msg::pose_t>,        Check<terra_msg::status_t>,
     Check<terra_msg::config_t>,      Check<terra_msg::log_mark_t>,
+    Check<terra_msg::gate_step_t>,
 };
 
 }  // namespace

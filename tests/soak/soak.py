@@ -262,7 +262,7 @@ def main():
     arguments = parse()
     if arguments.port is None:
         in_own_network()  # returns only where it is not allowed
-        arguments.port = 20_000 + 2 * (os.getpid() % 5_000)
+        arguments.port = 20_000 + 3 * (os.getpid() % 3_300)
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="terra-soak-")).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "log").mkdir()

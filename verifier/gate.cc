@@ -48,8 +48,8 @@ Decisions Gate::On(const RequestEvent& event) {
 // The route of another request leads elsewhere; that of a cancelled one,
 // nowhere.
 void Gate::OnChange(RequestRule::Change change, Decisions& out) {
-  lookup_ = change == RequestRule::Change::kReplaced ? Lookup::kNew
-                                                     : Lookup::kNone;
+  lookup_ =
+      change == RequestRule::Change::kReplaced ? Lookup::kNew : Lookup::kNone;
   if (change != RequestRule::Change::kReplaced &&
       change != RequestRule::Change::kCancelled) {
     return;

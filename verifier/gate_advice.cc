@@ -48,9 +48,11 @@ Decisions Gate::On(const AdviceEvent& event) {
     ++counters_.repeats;
     return out;
   }
-  lookup_ = *key == Code::kNotChecked || request().cancelled
-                ? Lookup::kNew
-                : Lookup::kReplaced;
+  // What a cancel makes stale needs no memory.
+  const bool of_cancelled =
+      request().cancelled && event.request_id == request().request_id;
+  lookup_ = *key == Code::kNotChecked || of_cancelled ? Lookup::kNew
+                                                      : Lookup::kReplaced;
   ++counters_.judged;
   Verdict verdict;
   verdict.decision = ++decisions_;

@@ -8,8 +8,8 @@
 /// The gate's core by its names and by its digest, as the journal has them.
 ///
 /// The core is all that decides: the request in force, the map, the baseline
-/// that is held, what is deployed, the robot's place along it, and the number of
-/// the last decision. It is not the memories (which ids were replaced, which
+/// that is held, what is deployed, the robot's place along it, and the number
+/// of the last decision. It is not the memories (which ids were replaced, which
 /// advice was judged): what they said of an event is written down with the
 /// event. Names of others, which the gate only repeats, decide nothing.
 namespace terra::verifier {

@@ -138,23 +138,6 @@ gate_step_t ToStep(const JournalEvent& event, Lookup lookup,
   return step;
 }
 
-CoreNames NamesBefore(const gate_step_t& step) {
-  CoreNames names;
-  names.request_id = step.request_id;
-  names.request_cancelled = step.request_cancelled != 0;
-  names.answered_by = step.answered_by;
-  names.map_id = step.map_id;
-  names.baseline_digest = step.baseline_digest;
-  names.baseline_session = step.baseline_session;
-  names.route_seq = step.route_seq;
-  names.place_cell = Cell{step.place_x, step.place_y};
-  names.place = step.place_index;
-  names.on_route = step.place_on_route != 0;
-  names.decisions = step.decision;
-  names.digest = step.core_before;
-  return names;
-}
-
 Result<GateEvent> EventOf(const gate_step_t& step,
                           std::span<const std::uint8_t> bytes) {
   switch (step.kind) {

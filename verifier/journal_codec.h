@@ -15,8 +15,8 @@
 namespace terra::verifier {
 
 /// What a gate takes.
-using GateEvent = std::variant<MapEvent, RequestEvent, BaselineEvent,
-                               AdviceEvent, PoseEvent>;
+using GateEvent =
+    std::variant<MapEvent, RequestEvent, BaselineEvent, AdviceEvent, PoseEvent>;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -44,9 +44,6 @@ terra_msg::gate_step_t ToStep(const JournalEvent& event, Lookup lookup,
                               std::int64_t now_us, const CoreNames& before,
                               const Decisions& decisions,
                               std::int64_t core_after);
-
-/// The names of the core before a step, as the step has them.
-CoreNames NamesBefore(const terra_msg::gate_step_t& step);
 
 /// Reads the event of a step from bytes: those of the step, or those of the
 /// message itself where the step has none. A map is only named, its `map` is

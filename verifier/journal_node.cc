@@ -80,7 +80,8 @@ std::optional<JournalPlayer::Event> JournalPlayer::Next() {
                  {step.kind,
                   {step.event_session, step.event_seq, step.event_digest},
                   step.event_bytes},
-                 step.now_us};
+                 step.now_us,
+                 step.core_after};
       waiting_.pop_front();
       return next;
     }

@@ -30,6 +30,9 @@ class JournalWriter {
   /// From now on to another bus.
   void WriteTo(bus::Outbox& out) { out_ = &out; }
 
+  /// The next step is the first of a gate that starts over.
+  void StartOver() { steps_ = 0; }
+
   /// Pre: the step has neither number nor bytes yet.
   void Write(terra_msg::gate_step_t step, Bytes event_bytes);
 
@@ -64,6 +67,7 @@ class JournalPlayer {
     GateEvent event;
     JournalEvent in_journal;
     std::int64_t now_us = 0;
+    std::int64_t core_after = 0;
   };
   /// The next event, if it can be played.
   std::optional<Event> Next();

@@ -1,7 +1,7 @@
 // terra-verifier: the gate.
 // Listens to the map, PLAN_REQUEST, BASELINE, POSE and, on the advice bus,
-// ADVICE; publishes DEPLOYED, VERDICT, STATUS, CONFIG and, on a port of its own,
-// GATE_STEP; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
+// ADVICE; publishes DEPLOYED, VERDICT, STATUS, CONFIG and, on a port of its
+// own, GATE_STEP; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
 #include <optional>
 
 #include <CLI/CLI.hpp>

@@ -129,6 +129,7 @@ void VerifierNode::OnStep(const gate_step_t& message, bus::Time now) {
   if (player_.Take(message)) {
     gate_ = Gate(options_);
     core_ = NamesOf(gate_);
+    journal_.StartOver();
   }
   PlayJournal(now);
 }
@@ -142,6 +143,7 @@ void VerifierNode::PlayJournal(bus::Time now) {
           });
         },
         next->event);
+    if (core_.digest != next->core_after) ++replay_differs_;
   }
 }
 
@@ -258,6 +260,7 @@ void VerifierNode::AddCounters(bus::Counters& counters) const {
     counters.emplace_back("replay_waiting",
                           static_cast<std::int64_t>(player_.waiting()));
     counters.emplace_back("replay_missing", player_.missing());
+    counters.emplace_back("replay_differs", replay_differs_);
   }
   counters.emplace_back("lost", static_cast<std::int64_t>(map_.sender().lost() +
                                                           planner_.lost()));

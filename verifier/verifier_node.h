@@ -19,8 +19,8 @@ namespace terra::verifier {
 ///
 /// All decisions are Gate's; this class converts messages and keeps time. The
 /// deployed bus is handed over before advice in every turn (bus/event_loop.h).
-/// Each event that changed the gate's core or led to a decision is written down,
-/// after what was decided, as a step of the journal (docs/gate.md).
+/// Each event that changed the gate's core or led to a decision is written
+/// down, after what was decided, as a step of the journal (docs/gate.md).
 /// Advice that gets a verdict waits in an AdviceQueue; Advance judges one, so
 /// the deployed bus is looked at between any two.
 class VerifierNode : public bus::Node {
@@ -71,7 +71,9 @@ class VerifierNode : public bus::Node {
   /// played.
   template <typename Event, typename Message>
   void Hear(const Event& event, const Message& message, bus::Time now);
-  void Hear(const AdviceEvent& event, bus::Time now) { Hear(event, event, now); }
+  void Hear(const AdviceEvent& event, bus::Time now) {
+    Hear(event, event, now);
+  }
   void Send(const Verdict& verdict, std::int64_t t_det_us);
   void Send(const Deployed& deployed, bus::Time now);
 
@@ -83,6 +85,7 @@ class VerifierNode : public bus::Node {
   bus::Outbox& out_;
   JournalWriter journal_;
   JournalPlayer player_;
+  std::int64_t replay_differs_ = 0;  // Steps that ended in another core.
   bus::MapReceiver map_;
   bus::SenderTracker planner_;
   bus::Periodic repeat_{bus::kStatePeriod};

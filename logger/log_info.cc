@@ -49,6 +49,8 @@ bool IsWellFormed(bus::Channel channel, std::span<const std::uint8_t> data) {
       return IsWellFormed<terra_msg::config_t>(data);
     case bus::Channel::kLog:
       return IsWellFormed<log_mark_t>(data);
+    case bus::Channel::kGateStep:
+      return IsWellFormed<terra_msg::gate_step_t>(data);
   }
   return false;
 }

@@ -41,8 +41,8 @@ void DrivenRoute::Follow(const Route& waypoints) {
 
 bool DrivenRoute::FollowFrom(const Route& waypoints, int place, bool on_route) {
   CellPath cells = RasterizeRoute(waypoints);
-  const bool fits = cells.empty() ? place == -1
-                                  : place >= 0 && place < std::ssize(cells);
+  const bool fits =
+      cells.empty() ? place == -1 : place >= 0 && place < std::ssize(cells);
   if (!fits) return false;
   waypoints_ = waypoints;
   cells_ = std::move(cells);

@@ -176,8 +176,8 @@ class Soak:
     def judge(self):
         saw = self.watch
         rows, grown = judge.flatness(self.usage)
-        audit, unexplained = judge.audit_logs(self.bin / "terra", self.folder / "log")
-        self.failures += grown + unexplained
+        audit, findings = judge.audit_logs(self.bin / "terra", self.folder / "log")
+        self.failures += grown + findings
         self.failures += [f"DEPLOYED {one}" for one in saw.violations]
         self.failures += [f"no route within {watch.ROUTE_WITHIN_S:g} s: {self._told(one)}"
                           for one in saw.unserved]

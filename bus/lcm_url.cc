@@ -149,4 +149,17 @@ Result<std::string> AdviceUrlFor(const std::string& deployed_url) {
   return url->text();
 }
 
+Result<std::string> JournalUrlFor(const std::string& deployed_url) {
+  Result<LcmUrl> url = ParseLcmUrl(deployed_url);
+  if (!url) return url.error();
+  if (!url->is_udpm()) return deployed_url;
+  if (url->port > kMaxPort - 2) {
+    return BadUrl(deployed_url,
+                  "the gate's journal needs this port plus two; give a smaller "
+                  "port");
+  }
+  url->port += 2;
+  return url->text();
+}
+
 }  // namespace terra::bus

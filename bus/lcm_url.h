@@ -48,4 +48,9 @@ std::string EffectiveLcmUrl(const std::string& given);
 /// URL where it is not udpm.
 Result<std::string> AdviceUrlFor(const std::string& deployed_url);
 
+/// Returns where the gate of a deployed bus says what it heard, for the
+/// recorder: the same URL with its port plus two; the same URL where it is not
+/// udpm.
+Result<std::string> JournalUrlFor(const std::string& deployed_url);
+
 }  // namespace terra::bus

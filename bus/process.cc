@@ -161,6 +161,21 @@ bool BusOptions::OneBus() const {
   return deployed && advice && SameBus(*deployed, *advice);
 }
 
+Result<std::string> BusOptions::JournalUrl() const {
+  if (OneBus()) return lcm_url;
+  Result<std::string> journal = JournalUrlFor(lcm_url);
+  if (!journal) return journal;
+  const Result<LcmUrl> parsed = ParseLcmUrl(*journal);
+  const Result<LcmUrl> advice = ParseLcmUrl(advice_url);
+  if (parsed && advice && SameBus(*parsed, *advice)) {
+    return Error{ErrorCode::kInvalid,
+                 "--advice-url " + advice_url +
+                     ": the port of --lcm-url plus two is for the gate's "
+                     "journal; choose another port"};
+  }
+  return journal;
+}
+
 std::string BusOptions::Notice() const {
   if (lcm_url.starts_with("memq://")) {
     return lcm_url +

@@ -27,6 +27,10 @@ struct BusOptions {
   Status Complete();
   /// Does advice travel on the deployed bus? Pre: Complete.
   bool OneBus() const;
+  /// Where the gate's journal goes: JournalUrlFor the deployed bus, or that bus
+  /// itself where OneBus. Errors: a port that there is not, or that is the
+  /// advice bus's. Pre: Complete.
+  Result<std::string> JournalUrl() const;
   /// What whoever starts a program should know about its bus, or nothing.
   std::string Notice() const;
   Result<ChannelNames> Channels() const;

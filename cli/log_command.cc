@@ -73,7 +73,15 @@ std::string ConclusionLine(const logger::Audit& audit) {
   const std::string conclusion = logger::Conclusion(audit);
   if (!audit.clean()) return conclusion;
   if (!audit.made_any_again()) {
-    return conclusion + ": no decision of a gate was made again";
+    if (audit.has_journal || audit.sessions.empty()) {
+      return conclusion + ": no decision of a gate was made again";
+    }
+    return conclusion +
+           ": this log holds decisions of a gate and no step of its journal "
+           "(TERRA_GATE_STEP), by which they are made again. The gate sends it "
+           "to the deployed port plus two: is gate or recorder of an older "
+           "version, or kept from that port? A gate that does nothing new "
+           "writes no step";
   }
   if (!audit.closed) {
     return conclusion +
@@ -82,31 +90,37 @@ std::string ConclusionLine(const logger::Audit& audit) {
   }
   if (audit.unrecorded == 0) return conclusion;
   return conclusion + ", but for " + std::to_string(audit.unrecorded) +
-         " verdicts not made again";
+         " decisions not made again";
 }
 
 void PrintAudit(const logger::Audit& audit) {
-  std::cout << audit.verdicts << " verdicts and " << audit.deployed
-            << " deployments made again, the same; " << audit.anchors
-            << " taken as the state to begin from\n";
+  std::cout << audit.steps << " steps of the journal played again, with "
+            << audit.verdicts << " verdicts and " << audit.deployed
+            << " deployments, the same; " << audit.anchors
+            << " times begun from the state that the log holds\n";
   for (const std::int64_t session : audit.sessions) {
     std::cout << "session of the gate: " << session << "\n";
   }
   if (audit.unchecked > 0) {
-    std::cout << audit.unchecked
-              << " verdicts from before the first DEPLOYED not checked\n";
+    std::cout
+        << audit.unchecked
+        << " decisions not checked: the log does not hold the state before "
+           "them, their step or their message\n";
+  }
+  if (audit.lookups_given > 0) {
+    std::cout << audit.lookups_given
+              << " times what the gate remembered of advice was taken as the "
+                 "journal has it, since it is from before this log\n";
   }
   if (audit.unrecorded > 0) {
-    std::cout << audit.unrecorded
-              << " verdicts are on advice that this log does not hold, and "
-                 "were not made again.\n"
-                 "  In a flood of advice the gate looks at a part of it, and "
-                 "the recorder at another part;\n"
-                 "  the recorder turned away "
-              << audit.advice_turned_away
-              << " datagrams. This is no fault of the gate, and no route was\n"
-                 "  deployed unseen: each DEPLOYED holds its route, which was "
-                 "checked and priced again.\n";
+    std::cout
+        << audit.unrecorded
+        << " decisions are on messages that the gate left out of its "
+           "journal, to keep it within 1 MB a second,\n"
+           "  and that the recorder did not hear either. This is no fault "
+           "of the gate, and no route was deployed\n"
+           "  unseen: each DEPLOYED that is gone on from was priced "
+           "again.\n";
   }
   for (const std::string& note : audit.notes) {
     std::cout << "note: " << note << "\n";
@@ -136,7 +150,9 @@ void PrintAuditJson(const logger::Audit& audit) {
                               {"anchors", audit.anchors},
                               {"unchecked", audit.unchecked},
                               {"unrecorded", audit.unrecorded},
-                              {"advice_turned_away", audit.advice_turned_away},
+                              {"steps", audit.steps},
+                              {"lookups_given", audit.lookups_given},
+                              {"has_journal", audit.has_journal},
                               {"notes", audit.notes},
                               {"num_findings", audit.num_findings},
                               {"findings", findings}};
@@ -159,10 +175,11 @@ int RunAudit(const AuditArguments& arguments) {
 void AddAudit(CLI::App& log, int& exit_code) {
   CLI::App& command = *log.add_subcommand(
       "audit",
-      "Make every verdict and deployment again from its inputs and compare; "
-      "exit 1 if anything differs or is missing, if the log was not closed, or "
-      "if there is nothing to audit. Verdicts on advice that the "
-      "recorder turned away in a flood are counted and are no finding");
+      "Make every verdict and deployment again from the gate's journal and "
+      "compare; exit 1 if anything differs or is missing, if the log was not "
+      "closed, or if there is nothing to audit (no journal, no decision). What "
+      "the gate left out of its journal in a flood is counted and is no "
+      "finding");
   const auto arguments = std::make_shared<AuditArguments>();
   command.add_option("file", arguments->file, "LCM event log")->required();
   command.add_flag("--json", arguments->json, "Print JSON");

@@ -21,7 +21,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent
 # The order of the channels in C++ and in the table: along a request's way.
 ORDER = ["map_header_t", "map_tile_t", "map_request_t", "plan_request_t",
          "baseline_t", "advice_t", "verdict_t", "deployed_t", "pose_t",
-         "status_t", "config_t", "log_mark_t"]
+         "status_t", "config_t", "log_mark_t", "gate_step_t"]
 LAYOUT = {"int64_t": "l", "int32_t": "i", "int16_t": "h", "int8_t": "b",
           "byte": "b", "double": "d", "string": "s"}
 BITS = {"int64_t": 63, "int32_t": 31, "int16_t": 15, "int8_t": 7, "byte": 8}

@@ -1,6 +1,5 @@
 #include "logger/audit.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "logger/audit_session.h"
@@ -36,9 +35,6 @@ std::string Conclusion(const Audit& audit) {
 
 namespace {
 
-// A bound, so that sums of any numbers of a log do not overflow.
-constexpr std::int64_t kMostTurnedAway = 1'000'000'000'000;
-
 void AddDamage(const LogReader& reader, const SealChecker& seals,
                Audit& audit) {
   const auto add = [&audit](std::string what) {
@@ -60,25 +56,6 @@ void AddDamage(const LogReader& reader, const SealChecker& seals,
   }
 }
 
-// The recorder tells in its heartbeat, which stands in its own log.
-std::int64_t TurnedAway(const LogContents& contents, const SealChecker& seals) {
-  if (!seals.header()) return 0;
-  std::int64_t most = 0;
-  for (const auto& [index, time_us, status] : contents.statuses) {
-    if (status.session != seals.header()->session) continue;
-    std::int64_t turned_away = 0;
-    for (std::size_t i = 0; i < status.counter_name.size(); ++i) {
-      const std::string& name = status.counter_name[i];
-      if (name == "advice_over_limit" || name == "advice_lost_in_kernel") {
-        turned_away += std::clamp<std::int64_t>(status.counter_value[i], 0,
-                                                kMostTurnedAway);
-      }
-    }
-    most = std::max(most, turned_away);
-  }
-  return most;
-}
-
 }  // namespace
 
 Audit AuditContents(LogContents& contents, const LogReader& reader,
@@ -88,7 +65,6 @@ Audit AuditContents(LogContents& contents, const LogReader& reader,
   audit.closed = !seals.sealed() || seals.closed();
   // Under good seals the log is what was heard.
   const bool as_heard = seals.sealed() && audit.clean();
-  if (as_heard) audit.advice_turned_away = TurnedAway(contents, seals);
   for (const Conflict& conflict : contents.conflicts) {
     if (conflict.of_gate || !as_heard) {
       audit.Add({Finding::Kind::kConflict, 0, 0, conflict.what});
@@ -96,8 +72,10 @@ Audit AuditContents(LogContents& contents, const LogReader& reader,
       audit.notes.push_back(conflict.what);
     }
   }
-  for (const auto& [session, decisions] : contents.decisions) {
-    audit.sessions.push_back(session);
+  audit.sessions = contents.GateSessions();
+  audit.has_journal = !contents.steps.empty();
+  if (!audit.has_journal) return audit;
+  for (const std::int64_t session : audit.sessions) {
     SessionAudit(contents, session, audit).Run();
   }
   return audit;

@@ -12,10 +12,10 @@ namespace terra::logger {
 struct Finding {
   enum class Kind {
     kDamage,        ///< Bytes that are no events, or not what was written.
-    kConflict,      ///< One name, two messages; a decision not readable.
-    kGap,           ///< Decisions of the gate that are not in the log.
-    kMissingInput,  ///< A decision names what the log does not hold.
-    kMismatch,      ///< The gate decides otherwise on the same inputs.
+    kConflict,      ///< One name, two messages; what cannot be read.
+    kGap,           ///< Steps or decisions of the gate that are not in the log.
+    kMissingInput,  ///< A step names what the log does not hold.
+    kMismatch,      ///< The gate does otherwise on the same step.
   };
   Kind kind = Kind::kDamage;
   std::int64_t session = 0;   ///< Of the gate, 0 for none.
@@ -33,16 +33,21 @@ struct Audit {
   std::vector<std::int64_t> sessions;  ///< Of the gate.
   std::int64_t verdicts = 0;           ///< Made again, and the same.
   std::int64_t deployed = 0;           ///< Made again, and the same.
-  std::int64_t anchors = 0;  ///< Deployments taken as the state to go on from:
-                             ///< route and costs made again, cause not known.
-  std::int64_t unchecked = 0;  ///< Verdicts from before the first DEPLOYED.
-  /// Datagrams of the advice bus that the recorder of a sealed log said it
-  /// turned away. Gate and recorder each look at so many a second, in a flood
-  /// not at the same ones.
-  std::int64_t advice_turned_away = 0;
-  /// Verdicts that could not be made again, since the recorder turned away what
-  /// was judged. No findings; always 0 where it turned away nothing.
+  std::int64_t steps = 0;  ///< Of the journal, played with the same outcome.
+  /// Cores made from messages of the log, and proved by their digest, where the
+  /// step before was not in the log or was not right.
+  std::int64_t anchors = 0;
+  /// What the gate's memories said of advice, taken as the journal has it,
+  /// since the log does not hold all that they remembered.
+  std::int64_t lookups_given = 0;
+  /// Decisions of which the log does not hold the state before, the step or the
+  /// message: before its beginning, at its end, or at a gap.
+  std::int64_t unchecked = 0;
+  /// Decisions on events that the gate left out of its journal to keep the
+  /// journal within its rate, and that the log does not hold either.
   std::int64_t unrecorded = 0;
+  /// Some gate wrote a journal in this log.
+  bool has_journal = false;
   std::vector<Finding> findings;  ///< The first kMaxFindings.
   std::int64_t num_findings = 0;
   /// What other processes than the gate did wrong, if the log's seals show that
@@ -66,15 +71,14 @@ struct Audit {
 /// are named first, then that there is nothing, then that the end is missing.
 std::string Conclusion(const Audit& audit);
 
-/// Makes every verdict and deployment of a log again, through the gate, from
-/// the inputs that each names (docs/gate.md, invariant 6), and compares byte
-/// for byte except utime, session, seq and T_det; checks the log's seals.
+/// Plays the journals of a log's gates (docs/gate.md) to a gate of its own,
+/// step by step, and compares decisions and cores with what the journals say,
+/// and the decisions with VERDICT and DEPLOYED, byte for byte except utime,
+/// session, seq and T_det; checks the log's seals.
 ///
-/// The order in which the log has them does not matter, since it is not the
-/// order in which the gate heard them: decisions are taken by their number, and
-/// each says what it was made from. Where the log begins in mid-session, or
-/// lacks decisions, the next DEPLOYED is the state to go on from. A verdict on
-/// advice that the recorder turned away is counted and passed over.
+/// The order in which the log has the messages does not matter: steps are taken
+/// by their number. Each step is checked by itself, so one that is missing
+/// costs only what it hides. A log without a journal is nothing to audit.
 Audit AuditLog(LogReader& reader);
 
 /// The same for a log that was read to its end.

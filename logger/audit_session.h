@@ -5,15 +5,17 @@
 #include <string>
 
 #include "logger/audit.h"
-#include "logger/decision_causes.h"
-#include "logger/later_decisions.h"
 #include "logger/log_contents.h"
-#include "logger/replayed_gate.h"
+#include "verifier/journal_codec.h"
 
 namespace terra::logger {
 
-/// Plays the inputs of one session of the gate to a gate of its own, decision
-/// by decision, and compares.
+/// Plays the journal of one session of the gate to a gate of its own, step by
+/// step, and compares decisions and core with what the journal and the log say.
+///
+/// Each step is checked by itself, from the core before it. That is the core
+/// after the step before; where that step is not in the log, or was not right,
+/// the core is made anew from the messages that the step names.
 /// Threads: one.
 class SessionAudit {
  public:
@@ -22,52 +24,47 @@ class SessionAudit {
   void Run();
 
  private:
+  using Step = terra_msg::gate_step_t;
   using Decided = LogContents::Decided;
-  using Decisions = LaterDecisions::Decisions;
 
-  void Take(Decisions::const_iterator at);
-  void TakeState(Decisions::const_iterator at);
-  void BeginUnasked(const Decisions::value_type& verdict);
-  bool BeganInThisLog(std::int64_t decision);
-  bool Follows(std::int64_t decision);
-  void TakeFirst(const Logged<Decided>& logged);
-  void BeginFrom(const terra_msg::deployed_t& deployed, std::int64_t index);
-  void Decide(Decisions::const_iterator at);
-  bool Fits(const ReplayedGate& gate, Decisions::const_iterator at) const;
-  std::vector<ReplayedGate> GatesAfter(Decisions::const_iterator at);
-  void AddGatesAfter(Decisions::const_iterator at, const ReplayedGate& gate,
-                     std::vector<ReplayedGate>& after);
-  bool Add(Decisions::const_iterator at, ReplayedGate gate,
-           std::vector<ReplayedGate>& after) const;
-  void Go(std::vector<ReplayedGate> gates, std::int64_t decision);
-  void Explain(Decisions::const_iterator at);
-  void PassOver(const Logged<Decided>& logged);
-  Decided MessageOf(const verifier::Decision& made,
-                    std::int64_t decision_offset) const;
+  bool ReadOptions();
+  void Take(const Logged<Step>& logged);
+  bool IsPossible(const Step& step);
+  void NoteGap(const Logged<Step>& logged);
+  void NoteBegin(const Logged<Step>& logged);
+  bool StandBefore(const Step& step);
+  void PriceWhatIsInForce();
+  std::optional<verifier::GateEvent> EventOf(const Step& step);
+  std::optional<verifier::GateEvent> EventFromLog(const Step& step);
+  bool FindMap(const Step& step, verifier::MapEvent& event);
+  void Play(const Logged<Step>& logged, const verifier::GateEvent& event);
+  Step StepAgain(const Step& step, const verifier::CoreNames& before,
+                 const verifier::GateEvent& event,
+                 const verifier::Decisions& decisions) const;
+  verifier::Decisions Decide(const Step& step,
+                             const verifier::GateEvent& event);
+  void CompareDecision(const verifier::Decision& made,
+                       const Logged<Step>& logged);
+  void CheckUncovered();
+  bool IsAtTheEnd(std::int64_t time_us) const;
   void Fail(Finding::Kind kind, std::int64_t decision, std::string what);
 
   LogContents& contents_;
   const std::int64_t session_;
-  const Decisions& decisions_;
   Audit& audit_;
-  LaterDecisions later_;
-  DecisionCauses causes_;
   verifier::GateOptions options_;  // As the gate's CONFIG has them.
-  std::string bad_config_;         // Why they are not known; empty = they are.
 
-  // Gates that decided as the log has it so far: more than one where it cannot
-  // tell how far along a route before the robot was known to be. None = the
-  // state is not known.
-  std::vector<ReplayedGate> gates_;
-  // The log's numbers are this far ahead of the gate's own. Where the log
-  // begins, the first decision tells.
-  std::optional<std::int64_t> decision_offset_;
-  std::int64_t route_seq_offset_ = 0;
-  std::int64_t last_ = 0;
-  // No decision yet but the DEPLOYED that the log begins with, and no snapshot:
-  // there may have been verdicts before it began.
-  bool at_begin_ = true;
-  bool lost_ = false;  // A finding says why the state is not known.
+  // Stands after the last step; none = its state is not known.
+  std::optional<verifier::Gate> gate_;
+  // All steps so far were played, so the memories are what the gate's were.
+  bool complete_ = false;
+  std::int64_t first_step_ = 0;  // Behind the snapshot; 0 = none yet.
+  std::int64_t last_step_ = 0;
+  std::int64_t last_seq_ = 0;
+  std::int64_t last_now_us_ = 0;
+  std::int64_t last_core_ = 0;  // After the last step.
+  // Decisions up to this one have their step in the log, or a gap has them.
+  std::int64_t covered_ = 0;
 };
 
 }  // namespace terra::logger

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -25,6 +26,9 @@ constexpr std::int64_t kReceiveBuffer = std::int64_t{16} << 20;
 constexpr int kLcmQueueCapacity = 20'000;
 constexpr int kSilenceMs = 20;  // At the end.
 constexpr int kAdviceWaitsMs = 2;
+// On a bus that never falls silent: the other sockets' buffers hold this long.
+constexpr std::chrono::milliseconds kAdviceWaitsAtMost{20};
+constexpr std::chrono::seconds kEndWaitsAtMost{5};
 constexpr std::size_t kDatagramsPerTurn = 4'096;
 
 // liblcm complains loudly about a size that the kernel does not give.
@@ -65,22 +69,44 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
   const Status subscribed = tap->link_->Subscribe(".*", &BusTap::OnMessage,
                                                   tap.get(), kLcmQueueCapacity);
   if (!subscribed) return subscribed.error();
-  const Result<bus::LcmUrl> advice = bus::ParseLcmUrl(urls.advice);
+  tap->journal_channel_ = names.name(bus::Channel::kGateStep);
+  const Status advice = tap->OpenAdvice(urls.advice, names);
   if (!advice) return advice.error();
-  if (advice->is_udpm() && !bus::SameBus(*advice, tap->link_->url())) {
-    tap->advice_channel_ = names.name(bus::Channel::kAdvice);
-    std::vector<std::string> channels = {tap->advice_channel_};
-    for (const bus::Channel channel : bus::kAdvisorChannels) {
-      channels.push_back(names.name(channel));
-    }
-    auto opened = bus::AdviceReceiver::Open(urls.advice, channels);
-    if (!opened) return opened.error();
-    tap->advice_.emplace(*std::move(opened));
-  }
+  const Status journal = tap->OpenJournal(urls.journal);
+  if (!journal) return journal.error();
   tap->thread_ = std::thread([listening = tap.get()] {
     listening->Listen();
   });
   return tap;
+}
+
+// What does not travel on a port of its own is heard on the deployed bus.
+bool BusTap::IsApart(const std::string& text) const {
+  const Result<bus::LcmUrl> url = bus::ParseLcmUrl(text);
+  return url && url->is_udpm() && !bus::SameBus(*url, link_->url());
+}
+
+Status BusTap::OpenAdvice(const std::string& url,
+                          const bus::ChannelNames& names) {
+  if (!IsApart(url)) return Done{};
+  advice_channel_ = names.name(bus::Channel::kAdvice);
+  std::vector<std::string> channels = {advice_channel_};
+  for (const bus::Channel channel : bus::kAdvisorChannels) {
+    channels.push_back(names.name(channel));
+  }
+  auto opened = bus::AdviceReceiver::Open(url, channels);
+  if (!opened) return opened.error();
+  advice_.emplace(*std::move(opened));
+  return Done{};
+}
+
+Status BusTap::OpenJournal(const std::string& url) {
+  if (!IsApart(url)) return Done{};
+  auto opened = JournalTap::Open(WithReceiveBuffer(url, LargestReceiveBuffer()),
+                                 journal_channel_);
+  if (!opened) return opened.error();
+  journal_.emplace(*std::move(opened));
+  return Done{};
 }
 
 BusTap::BusTap(EventQueue& queue, std::unique_ptr<bus::LcmLink> link,
@@ -102,7 +128,9 @@ void BusTap::OnMessage(std::string_view channel,
   auto& self = *static_cast<BusTap*>(tap);
   if (channel == bus::kSelfTestChannel) return;
   // A name that is not one word would be taken for damage in the log.
-  if (bytes.size() > kMaxLogData || !IsLogChannel(channel)) {
+  // The journal is heard on its own port only.
+  if (bytes.size() > kMaxLogData || !IsLogChannel(channel) ||
+      (self.journal_ && channel == self.journal_channel_)) {
     ++self.counters_.refused;
     return;
   }
@@ -112,32 +140,41 @@ void BusTap::OnMessage(std::string_view channel,
 
 // THREADING: the one thread that handles this link and the advice socket.
 // It copies messages into the queue, stamped with the time, and never writes.
-// Advice waits a moment in its socket, so that the baseline that it answers,
-// which may come later over the other socket, stands before it in the log.
+// Advice and journal wait a moment in their sockets, so that the baseline that
+// an advice answers, and the decisions of a step, which may come later over the
+// other socket, stand before them in the log.
 void BusTap::Listen() {
-  std::array<pollfd, 3> waited = {
+  std::array<pollfd, 4> waited = {
       pollfd{stop_fd_, POLLIN, 0}, pollfd{link_->fd(), POLLIN, 0},
-      pollfd{advice_ ? advice_->fd() : -1, POLLIN, 0}};
+      pollfd{advice_ ? advice_->fd() : -1, POLLIN, 0},
+      pollfd{journal_ ? journal_->fd() : -1, POLLIN, 0}};
   while (true) {
     if (poll(waited.data(), waited.size(), -1) < 0) continue;  // EINTR
     if (waited[0].revents != 0) break;
-    const bool advice = waited[2].revents != 0;
-    HearDeployedBus(waited[1], advice ? kAdviceWaitsMs : 0);
+    const bool journal = waited[3].revents != 0;
+    const bool advice = waited[2].revents != 0 || (journal && advice_);
+    HearDeployedBus(waited[1], advice || journal ? kAdviceWaitsMs : 0,
+                    kAdviceWaitsAtMost);
     if (advice) DrainAdvice();
+    if (journal) DrainJournal();
   }
-  HearDeployedBus(waited[1], kSilenceMs);
+  HearDeployedBus(waited[1], kSilenceMs, kEndWaitsAtMost);
   if (advice_) DrainAdvice();
+  if (journal_) DrainJournal();
 }
 
 // Hears what is under way, until the bus was silent for so long. One that never
 // falls silent is not waited for.
-void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
+void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms,
+                             bus::Duration at_most) {
+  const bus::Time until = bus::Clock::now() + at_most;
   const int messages = link_->url().is_udpm()
                            ? static_cast<int>(bus::LcmLink::kMessagesPerHandle)
                            : 1;
   for (int i = 0; i < kLcmQueueCapacity && poll(&lcm, 1, silence_ms) > 0;
        i += messages) {
     if (!link_->Handle()) lcm.fd = -1;
+    if (bus::Clock::now() >= until) break;
   }
   const bus::UdpmReceiver::Counters read = link_->counters();
   Copy(read.fragments, counters_.fragments);
@@ -145,13 +182,16 @@ void BusTap::HearDeployedBus(pollfd& lcm, int silence_ms) {
   Copy(read.lost_in_kernel, counters_.lost_in_kernel);
 }
 
+void BusTap::Take(const bus::LcmDatagram& datagram) {
+  ++counters_.heard;
+  queue_.Push(bus::UnixMicroseconds(), datagram.channel, datagram.payload);
+}
+
 void BusTap::DrainAdvice() {
   advice_->Drain(bus::MonotonicMicroseconds(bus::Clock::now()),
                  kDatagramsPerTurn,
                  [this](const bus::LcmDatagram& datagram, bus::SenderAddress) {
-                   ++counters_.heard;
-                   queue_.Push(bus::UnixMicroseconds(), datagram.channel,
-                               datagram.payload);
+                   Take(datagram);
                  });
   const bus::AdviceReceiver::Counters& read = advice_->counters();
   const std::uint64_t of_advice = advice_->over_limit(advice_channel_);
@@ -159,6 +199,18 @@ void BusTap::DrainAdvice() {
   Copy(read.over_limit - of_advice, counters_.advisors_over_limit);
   Copy(read.malformed, counters_.advice_malformed);
   Copy(read.lost_in_kernel, counters_.advice_lost_in_kernel);
+}
+
+void BusTap::DrainJournal() {
+  journal_->Drain(bus::MonotonicMicroseconds(bus::Clock::now()),
+                  kDatagramsPerTurn,
+                  [this](const bus::LcmDatagram& datagram, bus::SenderAddress) {
+                    Take(datagram);
+                  });
+  const JournalTap::Counters& read = journal_->counters();
+  Copy(read.foreign, counters_.journal_foreign);
+  Copy(read.over_limit, counters_.journal_over_limit);
+  Copy(read.lost_in_kernel, counters_.journal_lost_in_kernel);
 }
 
 }  // namespace terra::logger

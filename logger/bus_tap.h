@@ -12,15 +12,18 @@
 #include "bus/advice_receiver.h"
 #include "bus/channels.h"
 #include "bus/lcm_link.h"
+#include "bus/time.h"
 #include "logger/event_queue.h"
+#include "logger/journal_tap.h"
 #include "terrain/result.h"
 
 struct pollfd;
 
 namespace terra::logger {
 
-/// Hears every channel of the deployed bus, the project's or not, and on the
-/// advice bus what advisors say, each channel within its limits.
+/// Hears every channel of the deployed bus, the project's or not; on the advice
+/// bus what advisors say, each channel within its limits; and the gates'
+/// journal on its own port, where alone it is taken.
 ///
 /// Bounds: a receive buffer as large as the kernel gives (up to 16 MB), then
 /// the
@@ -31,7 +34,8 @@ class BusTap {
  public:
   struct Urls {
     std::string deployed;
-    std::string advice;  ///< The same as deployed: it is opened once.
+    std::string advice;   ///< The same as deployed: it is opened once.
+    std::string journal;  ///< The same.
   };
   struct Counters {
     std::atomic<std::int64_t> heard{0};
@@ -44,6 +48,10 @@ class BusTap {
     std::atomic<std::int64_t> advisors_over_limit{0};  ///< Not ADVICE.
     std::atomic<std::int64_t> advice_malformed{0};
     std::atomic<std::int64_t> advice_lost_in_kernel{0};
+    /// As in JournalTap::Counters.
+    std::atomic<std::int64_t> journal_foreign{0};
+    std::atomic<std::int64_t> journal_over_limit{0};
+    std::atomic<std::int64_t> journal_lost_in_kernel{0};
   };
 
   /// The queue must outlive the tap.
@@ -64,14 +72,21 @@ class BusTap {
                         std::span<const std::uint8_t> bytes,
                         void* tap) noexcept;
   void Listen();
-  void HearDeployedBus(pollfd& lcm, int silence_ms);
+  void HearDeployedBus(pollfd& lcm, int silence_ms, bus::Duration at_most);
+  Status OpenAdvice(const std::string& url, const bus::ChannelNames& names);
+  Status OpenJournal(const std::string& url);
+  bool IsApart(const std::string& url) const;
+  void Take(const bus::LcmDatagram& datagram);
   void DrainAdvice();
+  void DrainJournal();
 
   EventQueue& queue_;
   std::unique_ptr<bus::LcmLink> link_;
   int stop_fd_;
   std::optional<bus::AdviceReceiver> advice_;
   std::string advice_channel_;
+  std::optional<JournalTap> journal_;
+  std::string journal_channel_;
   Counters counters_;
   std::thread thread_;
 };

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <set>
+#include <span>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -21,6 +24,13 @@ std::vector<std::uint8_t> WithoutEnvelope(T message) {
   message.session = 0;
   message.seq = 0;
   return bus::Encode(message);
+}
+
+// Of the message itself, without what a sender may have put behind it.
+template <typename T>
+std::int64_t DigestOf(const T& message, std::span<const std::uint8_t> bytes) {
+  return BytesDigest(
+      bytes.first(static_cast<std::size_t>(message.getEncodedSize())));
 }
 
 std::string At(const char* what, std::int64_t index) {
@@ -76,6 +86,50 @@ void LogContents::Compare() {
   }
   for (const auto& [name, said] : baselines) CompareWithRequest(said);
   for (const auto& said : other_baselines) CompareWithRequest(said);
+  for (const auto& [session, of_session] : steps) {
+    for (const auto& [number, said] : of_session) {
+      CompareWithJournal(said.message);
+      TakeBaselineOf(said);
+    }
+  }
+}
+
+// The gate wrote down what it heard of the deployed bus; the recorder heard it
+// too.
+void LogContents::CompareWithJournal(const terra_msg::gate_step_t& step) {
+  std::optional<bus::Channel> channel;
+  if (step.kind == terra_msg::gate_step_t::KIND_REQUEST) {
+    channel = bus::Channel::kPlanRequest;
+  } else if (step.kind == terra_msg::gate_step_t::KIND_BASELINE) {
+    channel = bus::Channel::kBaseline;
+  } else if (step.kind == terra_msg::gate_step_t::KIND_POSE) {
+    channel = bus::Channel::kPose;
+  }
+  if (!channel) return;
+  const auto heard =
+      heard_.find({*channel, step.event_session, step.event_seq});
+  // Who does not number his messages has more under one name than are kept.
+  if (heard == heard_.end() || heard->second.size() >= kMaxVariants ||
+      std::ranges::find(heard->second, step.event_digest) !=
+          heard->second.end()) {
+    return;
+  }
+  conflicts.push_back({0, std::string(bus::BaseName(*channel)) + " number " +
+                              std::to_string(step.event_seq) +
+                              " of its sender differs from what step " +
+                              std::to_string(step.step) +
+                              " of the journal has"});
+}
+
+// A baseline that the recorder did not hear is in the gate's journal.
+void LogContents::TakeBaselineOf(const Logged<terra_msg::gate_step_t>& said) {
+  if (said.message.kind != terra_msg::gate_step_t::KIND_BASELINE) return;
+  const auto baseline =
+      bus::Decode<terra_msg::baseline_t>(said.message.event_bytes);
+  if (!baseline || baseline->status != terra_msg::baseline_t::STATUS_OK) return;
+  baselines.try_emplace(
+      {baseline->baseline_digest, baseline->session},
+      Logged<terra_msg::baseline_t>{said.index, said.time_us, *baseline});
 }
 
 void LogContents::CompareWithRequest(
@@ -117,6 +171,8 @@ void LogContents::Take(const LogEvent& event, std::int64_t index) {
       return TakeAs<terra_msg::config_t>(event, index);
     case bus::Channel::kStatus:
       return TakeAs<terra_msg::status_t>(event, index);
+    case bus::Channel::kGateStep:
+      return TakeAs<terra_msg::gate_step_t>(event, index);
     case bus::Channel::kMapRequest:
     case bus::Channel::kLog:
       return;
@@ -126,13 +182,29 @@ void LogContents::Take(const LogEvent& event, std::int64_t index) {
 template <typename T>
 void LogContents::TakeAs(const LogEvent& event, std::int64_t index) {
   Result<T> message = bus::Decode<T>(event.data);
+  constexpr bus::Channel channel = bus::MessageTraits<T>::kChannel;
   if (message) {
-    Place(Logged<T>{index, event.time_us, *std::move(message)});
+    const Logged<T> said{index, event.time_us, *std::move(message)};
+    if constexpr (channel == bus::Channel::kPlanRequest ||
+                  channel == bus::Channel::kBaseline ||
+                  channel == bus::Channel::kPose) {
+      auto& digests = heard_[{channel, said.message.session, said.message.seq}];
+      const std::int64_t digest = DigestOf(said.message, event.data);
+      if (digests.size() < kMaxVariants &&
+          std::ranges::find(digests, digest) == digests.end()) {
+        digests.push_back(digest);
+      }
+    }
+    if constexpr (channel == bus::Channel::kAdvice) {
+      Place(said, DigestOf(said.message, event.data));
+    } else {
+      Place(said);
+    }
     return;
   }
   ++malformed;
-  const auto channel = bus::MessageTraits<T>::kChannel;
-  if (channel == bus::Channel::kVerdict || channel == bus::Channel::kDeployed) {
+  if (channel == bus::Channel::kVerdict || channel == bus::Channel::kDeployed ||
+      channel == bus::Channel::kGateStep) {
     conflicts.push_back(
         {index, At(bus::BaseName(channel).data(), index) + " cannot be read",
          true});
@@ -145,7 +217,8 @@ void LogContents::Keep(std::map<Key, Logged<T>>& kept, const Key& key,
   const auto [place, is_new] = kept.try_emplace(
       key, Logged<T>{said.index, said.time_us, T{said.message}});
   if (!is_new && Essence(place->second.message) != Essence(said.message)) {
-    constexpr bool kOfGate = std::is_same_v<T, Decided>;
+    constexpr bool kOfGate =
+        std::is_same_v<T, Decided> || std::is_same_v<T, terra_msg::gate_step_t>;
     conflicts.push_back(
         {said.index, Differs(what, said.index, place->second.index), kOfGate});
   }
@@ -192,21 +265,25 @@ void LogContents::Place(const Logged<terra_msg::baseline_t>& said) {
   }
 }
 
-void LogContents::Place(const Logged<terra_msg::advice_t>& said) {
+void LogContents::Place(const Logged<terra_msg::advice_t>& said,
+                        std::int64_t digest) {
   const terra_msg::advice_t& message = said.message;
-  auto& variants =
-      advice[{message.request_id, message.map_id, message.baseline_digest,
-              message.session, message.attempt, message.candidate}];
+  const AdviceName name = {message.request_id,      message.map_id,
+                           message.baseline_digest, message.session,
+                           message.attempt,         message.candidate};
+  auto& variants = advice[name];
   const auto essence = Essence(message);
-  for (const Logged<terra_msg::advice_t>& known : variants) {
-    if (Essence(known.message) == essence) return;
+  const auto known = std::ranges::find_if(
+      variants, [&essence](const Logged<terra_msg::advice_t>& variant) {
+        return Essence(variant.message) == essence;
+      });
+  const auto place = static_cast<std::size_t>(known - variants.begin());
+  if (known == variants.end()) {
+    // Anybody may copy a name; the gate judges each content of its own.
+    if (variants.size() >= kMaxVariants) return;
+    variants.push_back(said);
   }
-  // Anybody may copy a name; the gate judges each content of its own.
-  if (variants.size() < kMaxVariants) variants.push_back(said);
-}
-
-void LogContents::Place(const Logged<terra_msg::pose_t>& said) {
-  poses[said.message.deployed_session].push_back(said);
+  advice_by_digest_.try_emplace(digest, AdvicePlace{name, place});
 }
 
 void LogContents::CheckNumber(std::int64_t decision, std::int64_t index) {
@@ -222,9 +299,19 @@ void LogContents::Place(const Logged<terra_msg::verdict_t>& said) {
 
 void LogContents::Place(const Logged<terra_msg::deployed_t>& said) {
   CheckNumber(said.message.decision, said.index);
-  first_deployed = std::min(first_deployed, said.index);
+  decision_of_route_.try_emplace({said.message.session, said.message.route_seq},
+                                 said.message.decision);
   Keep(decisions[said.message.session], said.message.decision, said,
        "DEPLOYED");
+}
+
+void LogContents::Place(const Logged<terra_msg::gate_step_t>& said) {
+  if (said.message.step < 1) {
+    conflicts.push_back(
+        {said.index, At("GATE_STEP", said.index) + " has no number", true});
+    return;
+  }
+  Keep(steps[said.message.session], said.message.step, said, "GATE_STEP");
 }
 
 void LogContents::Place(const Logged<terra_msg::config_t>& said) {
@@ -245,6 +332,60 @@ const Logged<terra_msg::baseline_t>* LogContents::FindBaseline(
   return found != baselines.end() && found->first.digest == digest
              ? &found->second
              : nullptr;
+}
+
+const Logged<LogContents::Decided>* LogContents::FindDecision(
+    std::int64_t session, std::int64_t number) const {
+  const auto of_session = decisions.find(session);
+  if (of_session == decisions.end()) return nullptr;
+  const auto found = of_session->second.find(number);
+  return found != of_session->second.end() ? &found->second : nullptr;
+}
+
+const terra_msg::deployed_t* LogContents::FindRoute(
+    std::int64_t session, std::int64_t route_seq) const {
+  const auto decision = decision_of_route_.find({session, route_seq});
+  if (decision == decision_of_route_.end()) return nullptr;
+  const Logged<Decided>* found = FindDecision(session, decision->second);
+  return found != nullptr ? std::get_if<terra_msg::deployed_t>(&found->message)
+                          : nullptr;
+}
+
+const terra_msg::advice_t* LogContents::FindAdvice(std::int64_t digest) const {
+  const auto found = advice_by_digest_.find(digest);
+  if (found == advice_by_digest_.end()) return nullptr;
+  return &advice.at(found->second.name)[found->second.variant].message;
+}
+
+const LogContents::Steps& LogContents::StepsOf(std::int64_t session) const {
+  static const Steps none;
+  const auto found = steps.find(session);
+  return found != steps.end() ? found->second : none;
+}
+
+std::vector<std::int64_t> LogContents::GateSessions() const {
+  std::set<std::int64_t> sessions;
+  for (const auto& [session, of_session] : decisions) sessions.insert(session);
+  for (const auto& [session, of_session] : steps) sessions.insert(session);
+  return {sessions.begin(), sessions.end()};
+}
+
+std::int64_t LogContents::FirstIndexOf(std::int64_t session) const {
+  std::int64_t first = std::numeric_limits<std::int64_t>::max();
+  const Steps& of_session = StepsOf(session);
+  if (!of_session.empty()) first = of_session.begin()->second.index;
+  const auto decided = decisions.find(session);
+  if (decided != decisions.end()) {
+    first = std::min(first, decided->second.begin()->second.index);
+  }
+  return first;
+}
+
+bool LogContents::HasGateBefore(std::int64_t session) const {
+  const std::int64_t first = FirstIndexOf(session);
+  return std::ranges::any_of(GateSessions(), [&](std::int64_t other) {
+    return FirstIndexOf(other) < first;
+  });
 }
 
 // ---- What a message says ----
@@ -278,6 +419,10 @@ std::vector<std::uint8_t> Essence(terra_msg::deployed_t message) {
 std::vector<std::uint8_t> Essence(terra_msg::verdict_t message) {
   message.t_det_us = 0;
   bus::CleanTexts(message);
+  return WithoutEnvelope(std::move(message));
+}
+
+std::vector<std::uint8_t> Essence(terra_msg::gate_step_t message) {
   return WithoutEnvelope(std::move(message));
 }
 

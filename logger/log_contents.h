@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -69,6 +69,26 @@ class LogContents {
   const Logged<terra_msg::baseline_t>* FindBaseline(std::int64_t digest,
                                                     std::int64_t session) const;
 
+  /// Returns the DEPLOYED that a gate's session had under this route_seq; null
+  /// when it is not in the log.
+  const terra_msg::deployed_t* FindRoute(std::int64_t session,
+                                         std::int64_t route_seq) const;
+  /// Returns a decision by its number; null when it is not in the log.
+  const Logged<Decided>* FindDecision(std::int64_t session,
+                                      std::int64_t number) const;
+  /// Returns an advice of the content of the message with this digest (XXH3-64
+  /// of its bytes); null when it was not heard, or has more than kMaxVariants
+  /// of its name before it.
+  const terra_msg::advice_t* FindAdvice(std::int64_t digest) const;
+
+  /// The journal of one gate by number of the step; empty when there is none.
+  using Steps = std::map<std::int64_t, Logged<terra_msg::gate_step_t>>;
+  const Steps& StepsOf(std::int64_t session) const;
+  /// Returns whether another session of the gate was heard before this one.
+  bool HasGateBefore(std::int64_t session) const;
+  /// All sessions of the gate.
+  std::vector<std::int64_t> GateSessions() const;
+
   /// Events before this one are the state from before the log: the snapshot
   /// that a part begins with.
   std::int64_t state_end = 0;
@@ -83,10 +103,10 @@ class LogContents {
   /// only one.
   static constexpr std::size_t kMaxVariants = 4;
   std::map<AdviceName, std::vector<Logged<terra_msg::advice_t>>> advice;
-  /// By session of the gate whose route the robot follows.
-  std::map<std::int64_t, std::vector<Logged<terra_msg::pose_t>>> poses;
   /// By session of the gate, then by number of the decision.
   std::map<std::int64_t, std::map<std::int64_t, Logged<Decided>>> decisions;
+  /// By session of the gate.
+  std::map<std::int64_t, Steps> steps;
   /// By session of the sender.
   std::map<std::int64_t, Logged<terra_msg::config_t>> configs;
   std::vector<Logged<terra_msg::status_t>> statuses;
@@ -94,9 +114,6 @@ class LogContents {
   /// The decisions of all gates in the order of the log. The maps above are in
   /// that of the sessions, which are random numbers.
   std::vector<const Logged<Decided>*> DecisionsInOrder() const;
-
-  /// Event of the first DEPLOYED; beyond every index when there is none.
-  std::int64_t first_deployed = std::numeric_limits<std::int64_t>::max();
 
   std::vector<Conflict> conflicts;
   std::int64_t malformed = 0;
@@ -106,9 +123,12 @@ class LogContents {
 
  private:
   void Take(const LogEvent& event, std::int64_t index);
+  std::int64_t FirstIndexOf(std::int64_t session) const;
   void CheckNumber(std::int64_t decision, std::int64_t index);
   void Compare();
   void CompareWithRequest(const Logged<terra_msg::baseline_t>& said);
+  void CompareWithJournal(const terra_msg::gate_step_t& step);
+  void TakeBaselineOf(const Logged<terra_msg::gate_step_t>& said);
   template <typename T>
   void TakeAs(const LogEvent& event, std::int64_t index);
   template <typename Key, typename T, typename Other>
@@ -119,12 +139,33 @@ class LogContents {
   void Place(const Logged<terra_msg::map_tile_t>& said);
   void Place(const Logged<terra_msg::plan_request_t>& said);
   void Place(const Logged<terra_msg::baseline_t>& said);
-  void Place(const Logged<terra_msg::advice_t>& said);
-  void Place(const Logged<terra_msg::pose_t>& said);
+  void Place(const Logged<terra_msg::advice_t>& said, std::int64_t digest);
+  void Place(const Logged<terra_msg::pose_t>&) {}  // Only heard_ has it.
   void Place(const Logged<terra_msg::verdict_t>& said);
   void Place(const Logged<terra_msg::deployed_t>& said);
+  void Place(const Logged<terra_msg::gate_step_t>& said);
   void Place(const Logged<terra_msg::config_t>& said);
   void Place(const Logged<terra_msg::status_t>& said);
+
+  // Who sent a message, and its place among his of that channel.
+  struct MessageName {
+    bus::Channel channel;
+    std::int64_t session = 0;
+    std::int64_t seq = 0;
+
+    friend auto operator<=>(const MessageName&, const MessageName&) = default;
+  };
+  struct AdvicePlace {
+    AdviceName name;
+    std::size_t variant = 0;
+  };
+
+  // What the gate takes off the deployed bus: the digests of the first
+  // kMaxVariants messages of each name.
+  std::map<MessageName, std::vector<std::int64_t>> heard_;
+  std::map<std::int64_t, AdvicePlace> advice_by_digest_;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t>
+      decision_of_route_;  // (session, route_seq)
 };
 
 /// Returns the bytes of a message without what each sending of it changes:
@@ -135,6 +176,7 @@ std::vector<std::uint8_t> Essence(terra_msg::plan_request_t message);
 std::vector<std::uint8_t> Essence(terra_msg::config_t message);
 std::vector<std::uint8_t> Essence(terra_msg::deployed_t message);
 std::vector<std::uint8_t> Essence(terra_msg::verdict_t message);
+std::vector<std::uint8_t> Essence(terra_msg::gate_step_t message);
 std::vector<std::uint8_t> Essence(const LogContents::Decided& message);
 
 /// Says a decision in a few words, for a finding.

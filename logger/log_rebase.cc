@@ -10,7 +10,7 @@
 
 namespace terra::logger {
 
-std::int64_t TimeLine::Put(std::int64_t time_us) {
+std::int64_t EvenTime::Put(std::int64_t time_us) {
   if (!before_us_) {
     now_us_ = std::clamp<std::int64_t>(time_us, 0, kLatestUs);
   } else {
@@ -30,7 +30,7 @@ std::int64_t TimeLine::Put(std::int64_t time_us) {
 
 RebasedLog RebaseLog(LogReader& reader, std::int64_t max_gap_us,
                      const std::function<void(std::string_view)>& write) {
-  TimeLine line(max_gap_us);
+  EvenTime line(max_gap_us);
   RebasedLog rebased;
   std::vector<std::uint8_t> bytes;
   while (const auto item = reader.Next()) {

@@ -12,13 +12,13 @@ namespace terra::logger {
 /// Puts the times of a log's events on one line: from one event to the next it
 /// goes on by what the log says, but never back, and by `max_gap_us` at most.
 /// The first event keeps its time, if that is between 1970 and kLatestUs.
-class TimeLine {
+class EvenTime {
  public:
   /// In the year 2255; no time is later.
   static constexpr std::int64_t kLatestUs = std::int64_t{1} << 53;
 
   /// Pre: 0 < max_gap_us <= kLatestUs.
-  explicit TimeLine(std::int64_t max_gap_us) : max_gap_us_(max_gap_us) {}
+  explicit EvenTime(std::int64_t max_gap_us) : max_gap_us_(max_gap_us) {}
 
   std::int64_t Put(std::int64_t time_us);
 
@@ -38,7 +38,7 @@ struct RebasedLog {
 };
 
 /// Hands the events of a log to `write`, as bytes of an LCM event log, with
-/// their times on one TimeLine and numbered anew. Leaves out the recorder's
+/// their times on one EvenTime and numbered anew. Leaves out the recorder's
 /// marks, whose seals are of the old times.
 RebasedLog RebaseLog(LogReader& reader, std::int64_t max_gap_us,
                      const std::function<void(std::string_view)>& write);

@@ -112,6 +112,9 @@ void LoggerNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("advisors_over_limit", heard.advisors_over_limit);
   counters.emplace_back("advice_malformed", heard.advice_malformed);
   counters.emplace_back("advice_lost_in_kernel", heard.advice_lost_in_kernel);
+  counters.emplace_back("journal_foreign", heard.journal_foreign);
+  counters.emplace_back("journal_over_limit", heard.journal_over_limit);
+  counters.emplace_back("journal_lost_in_kernel", heard.journal_lost_in_kernel);
 }
 
 }  // namespace terra::logger

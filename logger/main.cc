@@ -1,5 +1,6 @@
 // terra-logger: the flight recorder.
-// Listens to everything on the deployed bus and to advisors on the advice bus;
+// Listens to everything on the deployed bus, to advisors on the advice bus and
+// to the gate's journal on its port;
 // publishes MAP_REQUEST, STATUS, CONFIG; exits when asked to (SIGINT, SIGTERM),
 // with 1 when anything was lost, or when it has no bus or no log folder.
 #include <unistd.h>
@@ -49,8 +50,10 @@ terra::Result<std::unique_ptr<terra::bus::Node>> MakeNode(
   if (!recorder) return recorder.error();
   auto node = std::make_unique<terra::logger::LoggerNode>(
       *std::move(recorder), context.channels, context.out);
+  const terra::Result<std::string> journal = context.bus.JournalUrl();
+  if (!journal) return journal.error();
   const terra::Status listening =
-      node->Listen({context.bus.lcm_url, context.bus.advice_url});
+      node->Listen({context.bus.lcm_url, context.bus.advice_url, *journal});
   if (!listening) return listening.error();
   return std::unique_ptr<terra::bus::Node>(std::move(node));
 }

@@ -115,8 +115,9 @@ std::string Cards(const LogContents& contents,
       audit.clean() ? "audit" : "audit findings",
       audit.passed() ? "good" : "bad");
   if (audit.unrecorded > 0) {
-    html += Card(std::to_string(audit.unrecorded),
-                 "verdicts not made again (advice turned away in a flood)");
+    html +=
+        Card(std::to_string(audit.unrecorded),
+             "decisions not made again (left out of the journal in a flood)");
   }
   return html + "</div>\n";
 }

@@ -141,11 +141,20 @@ std::string ProcessTable(const LogContents& contents) {
 
 std::string AuditTable(const Audit& audit) {
   std::string html = Format(
-      "<p>%lld verdicts and %lld deployments made again from their inputs, "
-      "byte for byte the same; %lld taken as the state to begin from.</p>\n",
+      "<p>%lld steps of the gate's journal played again, with %lld verdicts "
+      "and "
+      "%lld deployments, byte for byte the same; %lld times begun from the "
+      "state "
+      "that the log holds.</p>\n",
+      static_cast<long long>(audit.steps),
       static_cast<long long>(audit.verdicts),
       static_cast<long long>(audit.deployed),
       static_cast<long long>(audit.anchors));
+  if (!audit.has_journal) {
+    html +=
+        "<p>This log holds no journal of a gate, so no decision can be made "
+        "again.</p>\n";
+  }
   if (audit.clean()) return html;
   std::vector<std::vector<std::string>> rows;
   for (const Finding& finding : audit.findings) {

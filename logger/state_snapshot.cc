@@ -42,6 +42,8 @@ void StateSnapshot::Take(bus::Channel channel, const HeardEvent& event) {
       return TakeDeployed(event);
     case bus::Channel::kVerdict:
       return TakeVerdict(event);
+    case bus::Channel::kGateStep:
+      return TakeStep(event);
     case bus::Channel::kMapRequest:
     case bus::Channel::kStatus:
     case bus::Channel::kLog:
@@ -68,8 +70,11 @@ void StateSnapshot::TakeHeader(const HeardEvent& event) {
   KeptMap next{
       std::make_shared<const HeardEvent>(event), *std::move(outline), {}};
   next.tiles.resize(next.outline.tile_digests.size());
-  for (const auto& known : {map_, old_map_}) {
-    if (!known || known->outline.grid.width != next.outline.grid.width ||
+  std::vector<const KeptMap*> all_known;
+  if (map_) all_known.push_back(&*map_);
+  for (const KeptMap& old : old_maps_) all_known.push_back(&old);
+  for (const KeptMap* known : all_known) {
+    if (known->outline.grid.width != next.outline.grid.width ||
         known->outline.grid.height != next.outline.grid.height) {
       continue;
     }
@@ -80,42 +85,93 @@ void StateSnapshot::TakeHeader(const HeardEvent& event) {
       }
     }
   }
-  if (map_ && map_->outline.map_id == deployed_map_id_) {
-    old_map_ = std::move(map_);
-  }
+  if (map_) old_maps_.push_back(*std::move(map_));
   map_ = std::move(next);
-  DropOldMap();
+  DropOldMaps();
 }
 
-// The gate decides on a map only when it has all of it, so the one before stays
-// until DEPLOYED names another.
-void StateSnapshot::DropOldMap() {
-  if (old_map_ && (old_map_->outline.map_id != deployed_map_id_ ||
-                   map_->outline.map_id == deployed_map_id_)) {
-    old_map_.reset();
-  }
+bool StateSnapshot::IsNamed(const KeptMap& map) const {
+  return map.outline.map_id == deployed_map_id_ ||
+         map.outline.map_id == journal_map_id_;
+}
+
+// The gate decides on a map only when it has all of it, so the ones before stay
+// until DEPLOYED and journal name others.
+void StateSnapshot::DropOldMaps() {
+  std::erase_if(old_maps_, [this](const KeptMap& old) {
+    return !IsNamed(old) || old.outline.map_id == map_->outline.map_id;
+  });
 }
 
 void StateSnapshot::TakeDeployed(const HeardEvent& event) {
   const auto deployed = bus::Decode<terra_msg::deployed_t>(event.data);
   if (!deployed) return;
-  GateOf(deployed->session).deployed =
-      std::make_shared<const HeardEvent>(event);
+  Keep(GateOf(deployed->session), deployed->decision,
+       {std::make_shared<const HeardEvent>(event), true});
   deployed_map_id_ = deployed->map_id;
-  DropOldMap();
+  DropOldMaps();
 }
 
 void StateSnapshot::TakeVerdict(const HeardEvent& event) {
   const auto verdict = bus::Decode<terra_msg::verdict_t>(event.data);
   if (!verdict) return;
-  GateOf(verdict->session).verdict = std::make_shared<const HeardEvent>(event);
+  Keep(GateOf(verdict->session), verdict->decision,
+       {std::make_shared<const HeardEvent>(event), false});
+}
+
+void StateSnapshot::TakeStep(const HeardEvent& event) {
+  const auto step = bus::Decode<terra_msg::gate_step_t>(event.data);
+  std::int64_t last = 0;
+  if (!step ||
+      __builtin_add_overflow(step->decision, step->num_decisions, &last)) {
+    return;
+  }
+  KeptGate& gate = GateOf(step->session);
+  gate.step = std::make_shared<const HeardEvent>(event);
+  gate.last_of_step = last;
+  DropOldDecisions(gate);
+  journal_map_id_ = step->kind == terra_msg::gate_step_t::KIND_MAP
+                        ? step->event_digest
+                        : step->map_id;
+  DropOldMaps();
+}
+
+void StateSnapshot::Keep(KeptGate& gate, std::int64_t decision,
+                         const KeptDecision& decided) {
+  gate.decided.insert_or_assign(decision, decided);
+  DropOldDecisions(gate);
+}
+
+// What goes: all before the DEPLOYED that was in force after the newest step,
+// and verdicts that the step accounts for. Without a step, all but the newest
+// of each.
+void StateSnapshot::DropOldDecisions(KeptGate& gate) {
+  auto& decided = gate.decided;
+  bool newer_deployed = false;
+  bool newer_verdict = false;
+  for (auto at = decided.end(); at != decided.begin();) {
+    --at;
+    const bool is_deployed = at->second.is_deployed;
+    bool& newer = is_deployed ? newer_deployed : newer_verdict;
+    const bool awaits_step = gate.step && at->first > gate.last_of_step;
+    const bool in_force = is_deployed || !gate.step;
+    if (awaits_step) continue;
+    if (in_force && !newer) {
+      newer = true;
+      continue;
+    }
+    at = decided.erase(at);
+  }
+  while (decided.size() > kMaxDecided) {
+    decided.erase(std::next(decided.begin()));
+  }
 }
 
 StateSnapshot::KeptGate& StateSnapshot::GateOf(std::int64_t session) {
   const auto known = std::ranges::find(gates_, session, &KeptGate::session);
   if (known != gates_.end()) return *known;
   if (gates_.size() == kMaxGates) gates_.pop_front();
-  return gates_.emplace_back(KeptGate{session, nullptr, nullptr});
+  return gates_.emplace_back(KeptGate{session, nullptr, 0, {}});
 }
 
 void StateSnapshot::TakeTiles(const HeardEvent& event) {
@@ -184,20 +240,21 @@ void StateSnapshot::Visit(
     const std::function<void(const HeardEvent&)>& visit) const {
   for (const auto& [name, config] : configs_) visit(*config);
   std::set<const HeardEvent*> visited;
-  for (const auto& map : {old_map_, map_}) {
-    if (!map) continue;
-    visit(*map->header);
-    for (const Kept& tile : map->tiles) {
+  const auto visit_map = [&](const KeptMap& map) {
+    visit(*map.header);
+    for (const Kept& tile : map.tiles) {
       if (tile && visited.insert(tile.get()).second) visit(*tile);
     }
-  }
+  };
+  for (const KeptMap& old : old_maps_) visit_map(old);
+  if (map_) visit_map(*map_);
   if (request_) visit(*request_);
   for (const KeptBaseline& baseline : baselines_) visit(*baseline.message);
   for (const Kept& advice : advice_) visit(*advice);
   if (pose_) visit(*pose_);
   for (const KeptGate& gate : gates_) {
-    if (gate.deployed) visit(*gate.deployed);
-    if (gate.verdict) visit(*gate.verdict);
+    if (gate.step) visit(*gate.step);
+    for (const auto& [number, decided] : gate.decided) visit(*decided.message);
   }
 }
 

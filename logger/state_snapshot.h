@@ -20,15 +20,17 @@ namespace terra::logger {
 /// log begins with them, so that it can be audited without the parts before.
 ///
 /// Keeps the newest CONFIG of each process; the map of the newest MAP_HEADER,
-/// with the tiles that it lists, and the map that DEPLOYED names if that is
-/// another; the newest PLAN_REQUEST and POSE; the newest baselines (what is
-/// deployed may be an older one) and advice (its verdict may come in the next
-/// part); and of each gate the newest DEPLOYED, and the newest VERDICT, which
-/// tells how many decisions there were before.
+/// with the tiles that it lists, and the maps that DEPLOYED and the gate's
+/// journal name if those are others; the newest PLAN_REQUEST and POSE; the
+/// newest baselines (what is deployed may be an older one) and advice (its
+/// verdict may come in the next part); and of each gate the newest step of its
+/// journal, the DEPLOYED that was in force after it, and the decisions that
+/// came since, whose step comes in this part. Of a gate without a journal the
+/// newest DEPLOYED and VERDICT.
 ///
-/// Bounds: two maps' compressed tiles, kMaxProcesses configurations,
-///         kMaxBaselines, kMaxAdvice, kMaxGates. Malformed messages change
-///         nothing.
+/// Bounds: three maps' compressed tiles, kMaxProcesses configurations,
+///         kMaxBaselines, kMaxAdvice, kMaxGates, kMaxDecided of each. Malformed
+///         messages change nothing.
 /// Threads: one.
 class StateSnapshot {
  public:
@@ -36,6 +38,7 @@ class StateSnapshot {
   static constexpr std::size_t kMaxAdvice = 64;
   static constexpr std::size_t kMaxBaselines = 8;
   static constexpr std::size_t kMaxGates = 4;
+  static constexpr std::size_t kMaxDecided = 32;
 
   void Take(bus::Channel channel, const HeardEvent& event);
 
@@ -54,11 +57,16 @@ class StateSnapshot {
     std::int64_t planner = 0;  // Its session: two may find the same route.
     Kept message;
   };
+  struct KeptDecision {
+    Kept message;
+    bool is_deployed = false;
+  };
   // One session of the gate; it deploys nothing before it is asked for a route.
   struct KeptGate {
     std::int64_t session = 0;
-    Kept deployed;
-    Kept verdict;
+    Kept step;
+    std::int64_t last_of_step = 0;  // The last decision of that step.
+    std::map<std::int64_t, KeptDecision> decided;  // By number.
   };
 
   void TakeHeader(const HeardEvent& event);
@@ -70,14 +78,19 @@ class StateSnapshot {
   void TakeAdvice(const HeardEvent& event);
   void TakeDeployed(const HeardEvent& event);
   void TakeVerdict(const HeardEvent& event);
+  void TakeStep(const HeardEvent& event);
+  static void Keep(KeptGate& gate, std::int64_t decision,
+                   const KeptDecision& decided);
+  static void DropOldDecisions(KeptGate& gate);
   KeptGate& GateOf(std::int64_t session);
-  void DropOldMap();
+  bool IsNamed(const KeptMap& map) const;
+  void DropOldMaps();
   template <typename T>
   void TakeNewest(Kept& kept, const HeardEvent& event);
 
   std::map<std::string, Kept> configs_;
   std::optional<KeptMap> map_;
-  std::optional<KeptMap> old_map_;  // That DEPLOYED still names.
+  std::deque<KeptMap> old_maps_;  // That a gate still names.
   Kept request_;
   // Different ones, the newest last.
   std::deque<KeptBaseline> baselines_;
@@ -85,6 +98,7 @@ class StateSnapshot {
   Kept pose_;
   std::deque<KeptGate> gates_;  // The one that began last is last.
   std::int64_t deployed_map_id_ = 0;
+  std::int64_t journal_map_id_ = 0;
 };
 
 }  // namespace terra::logger

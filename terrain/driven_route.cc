@@ -39,6 +39,18 @@ void DrivenRoute::Follow(const Route& waypoints) {
   cells_ = std::move(cells);
 }
 
+bool DrivenRoute::FollowFrom(const Route& waypoints, int place, bool on_route) {
+  CellPath cells = RasterizeRoute(waypoints);
+  const bool fits =
+      cells.empty() ? place == -1 : place >= 0 && place < std::ssize(cells);
+  if (!fits) return false;
+  waypoints_ = waypoints;
+  cells_ = std::move(cells);
+  place_ = cells_.empty() ? 0 : static_cast<std::size_t>(place);
+  on_route_ = on_route;
+  return true;
+}
+
 // Of equally near cells the last one counts: advice is rather late than
 // deployed behind the robot.
 void DrivenRoute::OnPose(Cell pose) {

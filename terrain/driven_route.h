@@ -22,6 +22,10 @@ class DrivenRoute {
   /// same cells up to the robot, else it is the start. Empty = no route.
   void Follow(const Route& waypoints);
 
+  /// Follows a route with the robot at a place along it, as if it had come
+  /// there. Returns false, and does nothing, where the route has no such place.
+  bool FollowFrom(const Route& waypoints, int place, bool on_route);
+
   /// The robot is at this cell, which may be any. Its place never goes back: it
   /// is the nearest cell within the window ahead, else the first one beyond it
   /// within the tolerance. A robot that is at neither is off the route until a
@@ -31,6 +35,8 @@ class DrivenRoute {
   /// Index of the cell that the robot has reached, and of the last cell; -1
   /// without a route.
   int place() const { return cells_.empty() ? -1 : static_cast<int>(place_); }
+  /// Its cell. Pre: place() is not -1.
+  Cell place_cell() const { return cells_[place_]; }
   int last_index() const { return static_cast<int>(cells_.size()) - 1; }
   bool on_route() const { return on_route_; }
 

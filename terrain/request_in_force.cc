@@ -7,11 +7,20 @@ namespace terra {
 void ReplacedIds::Add(std::int64_t id) {
   if (id == 0 || Has(id)) return;
   ids_.push_back(id);
+  ++num_added_;
   if (ids_.size() > capacity_) ids_.pop_front();
 }
 
 bool ReplacedIds::Has(std::int64_t id) const {
   return std::find(ids_.begin(), ids_.end(), id) != ids_.end();
+}
+
+RequestRule RequestRule::GoOnFrom(const RequestInForce& current,
+                                  std::int64_t answered_by) {
+  RequestRule rule;
+  rule.current_ = current;
+  rule.answered_by_ = answered_by;
+  return rule;
 }
 
 RequestRule::Change RequestRule::OnRequest(const RequestInForce& asked) {

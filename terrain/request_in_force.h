@@ -29,9 +29,12 @@ class ReplacedIds {
   /// 0 stands for "none" and is not remembered.
   void Add(std::int64_t id);
   bool Has(std::int64_t id) const;
+  /// How many ids were added so far.
+  std::int64_t num_added() const { return num_added_; }
 
  private:
   std::size_t capacity_;
+  std::int64_t num_added_ = 0;
   std::deque<std::int64_t> ids_;
 };
 
@@ -66,10 +69,18 @@ class RequestRule {
   /// The request that an answer names, from the sender's session.
   Change OnAnswer(const RequestInForce& carried, std::int64_t session);
 
+  /// Goes on from a state that was in force, with nothing remembered.
+  static RequestRule GoOnFrom(const RequestInForce& current,
+                              std::int64_t answered_by);
+
   const RequestInForce& current() const { return current_; }
+  /// The session whose answer last named the current request; 0 = none did.
+  std::int64_t answered_by() const { return answered_by_; }
   bool WasReplaced(std::int64_t request_id) const {
     return replaced_.Has(request_id);
   }
+  /// How many ids were remembered so far.
+  std::int64_t num_remembered() const { return replaced_.num_added(); }
 
  private:
   Change Cancel();
@@ -77,7 +88,6 @@ class RequestRule {
 
   RequestInForce current_;
   ReplacedIds replaced_{kRemembered};
-  // The session whose answer last named the current request; 0 = none did.
   std::int64_t answered_by_ = 0;
 };
 

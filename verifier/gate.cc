@@ -9,6 +9,34 @@ namespace terra::verifier {
 
 // ---- Requests ----
 
+std::optional<Gate> Gate::GoOnFrom(const GateOptions& options,
+                                   const GateState& state) {
+  Gate gate(options);
+  gate.requests_ = RequestRule::GoOnFrom(state.request, state.answered_by);
+  gate.map_ = state.map;
+  gate.map_id_ = state.map_id;
+  gate.decisions_ = state.decisions;
+  gate.deployed_ = state.deployed;
+  const bool has_route = state.deployed.has_route();
+  if ((state.baseline || has_route) && !state.map) return std::nullopt;
+  if (has_route != !state.deployed.waypoints.empty()) return std::nullopt;
+  if (has_route &&
+      !CheckRoute(*state.map, state.deployed.waypoints, state.request.start,
+                  state.request.goal, kBusLimits)
+           .feasible()) {
+    return std::nullopt;
+  }
+  if (!gate.driven_.FollowFrom(state.deployed.waypoints, state.place,
+                               state.on_route)) {
+    return std::nullopt;
+  }
+  if (state.baseline) {
+    gate.baseline_ =
+        HeldBaseline{*state.baseline, gate.CheckBaseline(*state.baseline)};
+  }
+  return gate;
+}
+
 Decisions Gate::On(const RequestEvent& event) {
   Decisions out;
   OnChange(requests_.OnRequest(
@@ -20,6 +48,8 @@ Decisions Gate::On(const RequestEvent& event) {
 // The route of another request leads elsewhere; that of a cancelled one,
 // nowhere.
 void Gate::OnChange(RequestRule::Change change, Decisions& out) {
+  lookup_ =
+      change == RequestRule::Change::kReplaced ? Lookup::kNew : Lookup::kNone;
   if (change != RequestRule::Change::kReplaced &&
       change != RequestRule::Change::kCancelled) {
     return;
@@ -169,6 +199,7 @@ void Gate::DeployNothing(Mode mode, Cause cause, Decisions& out) {
 Decisions Gate::On(const MapEvent& event) {
   TERRA_REQUIRE(event.map != nullptr);
   Decisions out;
+  lookup_ = Lookup::kNone;
   if (map_ != nullptr && event.map_id == map_id_) return out;
   replaced_maps_.Add(map_id_);
   map_ = event.map;

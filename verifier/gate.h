@@ -34,11 +34,23 @@ struct GateCounters {
   std::int64_t other_poses = 0;      ///< On a route that is not in force.
 };
 
+/// What a gate goes on from: all that decides, but for its memories.
+struct GateState {
+  RequestInForce request;
+  std::int64_t answered_by = 0;  ///< As RequestRule has it.
+  std::shared_ptr<const TerrainMap> map;
+  std::int64_t map_id = 0;
+  std::optional<BaselineEvent> baseline;
+  Deployed deployed;
+  int place = -1;  ///< Index on the route, -1 without one.
+  bool on_route = true;
+  std::int64_t decisions = 0;
+};
+
 /// Decides what is deployed: a state machine over events, without clock, I/O or
 /// unbounded memory. The same events in the same order give the same decisions.
 ///
 /// docs/gate.md states its rules and the invariants that the tests hold it to.
-/// A copy goes on from the same state (the audit tries events on copies).
 /// Threads: one.
 class Gate {
  public:
@@ -46,11 +58,21 @@ class Gate {
   explicit Gate(GateOptions options = {})
       : options_(options) {}  // GCOVR_EXCL_BR_LINE
 
+  /// A gate in a state that another one was in, with empty memories. Nothing
+  /// where no gate can be in this state: a route that is not feasible on the
+  /// map, a place that is not on it.
+  static std::optional<Gate> GoOnFrom(const GateOptions& options,
+                                      const GateState& state);
+
   Decisions On(const MapEvent& event);
   Decisions On(const RequestEvent& event);
   Decisions On(const BaselineEvent& event);
   Decisions On(const AdviceEvent& event);
   Decisions On(const PoseEvent& event);  ///< Never decides anything by itself.
+
+  /// As On, where the memories say this of the advice, whatever they hold: for
+  /// a gate whose memories lack what another one's had.
+  Decisions OnGiven(const AdviceEvent& event, Lookup lookup);
 
   /// Returns whether advice would get a verdict now. Else it is a repeat,
   /// speaks of what the gate does not know, or needs none, and costs no walk of
@@ -63,6 +85,24 @@ class Gate {
   const DrivenRoute& driven() const { return driven_; }
   const GateCounters& counters() const { return counters_; }
   bool has_map() const { return map_ != nullptr; }
+
+  // ---- The core, for its digest and the journal. ----
+
+  const RequestInForce& request() const { return requests_.current(); }
+  std::int64_t answered_by() const { return requests_.answered_by(); }
+  std::int64_t map_id() const { return map_id_; }
+  /// The baseline that is held; null = none.
+  const BaselineEvent* baseline() const {
+    return baseline_ ? &baseline_->message : nullptr;
+  }
+  std::int64_t decisions() const { return decisions_; }
+  /// What the memories said of the last event.
+  Lookup lookup() const { return lookup_; }
+  /// How many requests were remembered so far. A cancel may add one and change
+  /// nothing else.
+  std::int64_t num_remembered() const { return requests_.num_remembered(); }
+  /// The memory of what was judged never had to forget anything.
+  bool remembers_all_judged() const { return judged_.remembers_all(); }
 
  private:
   // The baseline of the current request, with what the gate found about it.
@@ -77,7 +117,6 @@ class Gate {
   };
 
   void OnChange(RequestRule::Change change, Decisions& out);
-  const RequestInForce& request() const { return requests_.current(); }
 
   bool Holds(const BaselineEvent& event) const;
   void DropBaseline();
@@ -99,6 +138,7 @@ class Gate {
   // The verdict's code so far: kNotChecked = the key matches what is in force;
   // nothing = the gate does not know what the advice speaks of.
   std::optional<Code> CheckKey(const AdviceEvent& event) const;
+  std::optional<Code> IfReplaced(bool remembered, Code stale) const;
   // Fills in what the verdict says; the whole route when it is accepted.
   std::optional<PricedRoute> Judge(const AdviceEvent& event,
                                    Verdict& verdict) const;
@@ -122,6 +162,8 @@ class Gate {
   // second: room for 20 s of a flood between two repetitions.
   JudgedAdvice judged_{4'096};
   GateCounters counters_;
+  Lookup lookup_ = Lookup::kNone;
+  std::optional<Lookup> given_;  // Instead of what the memories say.
 };
 
 }  // namespace terra::verifier

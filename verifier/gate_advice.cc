@@ -23,21 +23,36 @@ bool Gate::WouldJudge(const AdviceEvent& event) const {
          !judged_.Has(event);
 }
 
+Decisions Gate::OnGiven(const AdviceEvent& event, Lookup lookup) {
+  given_ = lookup;
+  Decisions out = On(event);
+  given_.reset();
+  return out;
+}
+
 Decisions Gate::On(const AdviceEvent& event) {
   Decisions out;
+  lookup_ = Lookup::kNone;
   if (event.kind == AdviceKind::kFailed) {
     ++counters_.failed_advice;
     return out;
   }
   const std::optional<Code> key = CheckKey(event);
   if (!key) {
+    lookup_ = Lookup::kUnknown;
     ++counters_.unknown_key;
     return out;
   }
-  if (!judged_.Add(event)) {
+  if (!judged_.Add(event) && !given_) {
+    lookup_ = Lookup::kRepeat;
     ++counters_.repeats;
     return out;
   }
+  // What a cancel makes stale needs no memory.
+  const bool of_cancelled =
+      request().cancelled && event.request_id == request().request_id;
+  lookup_ = *key == Code::kNotChecked || of_cancelled ? Lookup::kNew
+                                                      : Lookup::kReplaced;
   ++counters_.judged;
   Verdict verdict;
   verdict.decision = ++decisions_;
@@ -62,6 +77,7 @@ Decisions Gate::On(const AdviceEvent& event) {
 }
 
 Decisions Gate::On(const PoseEvent& event) {
+  lookup_ = Lookup::kNone;
   if (InForce(event.session, event.route_seq)) {
     driven_.OnPose(event.cell);
   } else {
@@ -78,22 +94,24 @@ bool Gate::InForce(std::int64_t session, std::int64_t route_seq) const {
 // Without a map there is no baseline.
 std::optional<Code> Gate::CheckKey(const AdviceEvent& event) const {
   if (event.request_id != request().request_id || !request().any()) {
-    return requests_.WasReplaced(event.request_id)
-               ? std::optional(Code::kStaleRequest)
-               : std::nullopt;
+    return IfReplaced(requests_.WasReplaced(event.request_id),
+                      Code::kStaleRequest);
   }
   if (request().cancelled) return Code::kStaleRequest;
   if (event.map_id != map_id_) {
-    return replaced_maps_.Has(event.map_id) ? std::optional(Code::kStaleMap)
-                                            : std::nullopt;
+    return IfReplaced(replaced_maps_.Has(event.map_id), Code::kStaleMap);
   }
   if (!baseline_ ||
       event.baseline_digest != baseline_->message.baseline_digest) {
-    return replaced_baselines_.Has(event.baseline_digest)
-               ? std::optional(Code::kStaleBaseline)
-               : std::nullopt;
+    return IfReplaced(replaced_baselines_.Has(event.baseline_digest),
+                      Code::kStaleBaseline);
   }
   return Code::kNotChecked;
+}
+
+std::optional<Code> Gate::IfReplaced(bool remembered, Code stale) const {
+  const bool replaced = given_ ? *given_ == Lookup::kReplaced : remembered;
+  return replaced ? std::optional(stale) : std::nullopt;
 }
 
 std::optional<Gate::PricedRoute> Gate::Judge(const AdviceEvent& event,

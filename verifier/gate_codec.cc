@@ -26,6 +26,10 @@ double CostOnBus(double cost) {
   return std::isfinite(cost) ? cost : kNotANumber;
 }
 
+double CostFromBus(double cost) {
+  return std::isfinite(cost) ? cost : kImpassable;
+}
+
 }  // namespace
 
 RequestEvent ToEvent(const plan_request_t& message) {
@@ -133,6 +137,27 @@ deployed_t ToMessage(const Deployed& deployed) {
   message.deployed_cost = CostOnBus(deployed.cost);
   message.baseline_cost = CostOnBus(deployed.baseline_cost);
   return message;
+}
+
+Deployed ToDeployed(const deployed_t& message) {
+  Deployed deployed;
+  deployed.decision = message.decision;
+  deployed.route_seq = message.route_seq;
+  deployed.request_id = message.request_id;
+  deployed.start = Cell{message.start_x, message.start_y};
+  deployed.goal = Cell{message.goal_x, message.goal_y};
+  deployed.map_id = message.map_id;
+  deployed.baseline_digest = message.baseline_digest;
+  deployed.mode = Mode{message.mode};
+  deployed.cause = Cause{message.cause};
+  deployed.source = message.source;
+  deployed.source_session = message.source_session;
+  deployed.source_attempt = message.source_attempt;
+  deployed.source_candidate = message.source_candidate;
+  deployed.waypoints = bus::WaypointsOf(message);
+  deployed.cost = CostFromBus(message.deployed_cost);
+  deployed.baseline_cost = CostFromBus(message.baseline_cost);
+  return deployed;
 }
 
 }  // namespace terra::verifier

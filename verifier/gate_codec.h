@@ -19,4 +19,7 @@ PoseEvent ToEvent(const terra_msg::pose_t& message);
 terra_msg::verdict_t ToMessage(const Verdict& verdict, std::int64_t t_det_us);
 terra_msg::deployed_t ToMessage(const Deployed& deployed);
 
+/// What such a message says was deployed.
+Deployed ToDeployed(const terra_msg::deployed_t& message);
+
 }  // namespace terra::verifier

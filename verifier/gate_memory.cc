@@ -47,6 +47,7 @@ bool JudgedAdvice::Add(const AdviceEvent& event) {
   known->second = ++heard_;
   by_age_.emplace(heard_, key);
   if (by_age_.size() > capacity_) {
+    forgot_ = true;
     known_.erase(by_age_.begin()->second);
     by_age_.erase(by_age_.begin());
   }

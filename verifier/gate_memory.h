@@ -22,6 +22,8 @@ class JudgedAdvice {
   bool Add(const AdviceEvent& event);
   /// Returns whether it would be a repeat.
   bool Has(const AdviceEvent& event) const;
+  /// Returns whether nothing was ever forgotten.
+  bool remembers_all() const { return !forgot_; }
 
  private:
   // (request, map, baseline, session, attempt, candidate, digest of the rest)
@@ -31,6 +33,7 @@ class JudgedAdvice {
   static Key KeyOf(const AdviceEvent& event);
 
   std::size_t capacity_;
+  bool forgot_ = false;
   std::int64_t heard_ = 0;
   std::map<std::int64_t, Key>
       by_age_;  // when last heard, the longest ago first

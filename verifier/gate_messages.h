@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -19,6 +20,13 @@ namespace terra::verifier {
 inline constexpr std::size_t kMaxNameBytes = 63;
 
 // ---- Events: what the shell takes off the bus, lengths already checked. ----
+
+/// The message that an event came with. Decides nothing; for the journal.
+struct HeardMessage {
+  std::int64_t session = 0;
+  std::int64_t seq = 0;
+  std::int64_t digest = 0;  ///< XXH3-64 of its encoded bytes.
+};
 
 /// A complete map came into force.
 struct MapEvent {
@@ -81,8 +89,18 @@ struct AdviceEvent {
   Anchor anchor;
   AdviceKind kind = AdviceKind::kNone;
   Route waypoints;
+  HeardMessage heard;
 
-  friend bool operator==(const AdviceEvent&, const AdviceEvent&) = default;
+  /// Repetitions of an advice are equal.
+  friend bool operator==(const AdviceEvent& a, const AdviceEvent& b) {
+    const auto said = [](const AdviceEvent& advice) {
+      return std::tie(advice.session, advice.advisor, advice.attempt,
+                      advice.candidate, advice.request_id, advice.map_id,
+                      advice.baseline_digest, advice.anchor, advice.kind,
+                      advice.waypoints);
+    };
+    return said(a) == said(b);
+  }
 };
 
 /// POSE.
@@ -163,6 +181,15 @@ struct Verdict {
   Cell fail_cell;
 
   friend bool operator==(const Verdict&, const Verdict&) = default;
+};
+
+/// What the gate's memories said of an event. Numbers are those of gate_step_t.
+enum class Lookup : std::int8_t {
+  kNone = 0,      ///< Nothing was looked up.
+  kNew = 1,       ///< Another request; advice that was never judged.
+  kRepeat = 2,    ///< Advice that has its verdict.
+  kReplaced = 3,  ///< Advice for what was in force once.
+  kUnknown = 4,   ///< Advice for what the gate does not know.
 };
 
 using Decision = std::variant<Verdict, Deployed>;

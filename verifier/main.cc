@@ -1,12 +1,13 @@
 // terra-verifier: the gate.
 // Listens to the map, PLAN_REQUEST, BASELINE, POSE and, on the advice bus,
-// ADVICE; publishes DEPLOYED, VERDICT, STATUS, CONFIG; exits when asked to
-// (SIGINT, SIGTERM) or when it has no bus.
+// ADVICE; publishes DEPLOYED, VERDICT, STATUS, CONFIG and, on a port of its
+// own, GATE_STEP; exits when asked to (SIGINT, SIGTERM) or when it has no bus.
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "bus/advice_receiver.h"
+#include "bus/bus.h"
 #include "bus/process.h"
 #include "verifier/gate_options.h"
 #include "verifier/verifier_node.h"
@@ -33,11 +34,22 @@ std::int64_t Microseconds(terra::bus::Time time) {
       .count();
 }
 
+// Where the journal goes: a bus apart, which only the recorder hears.
+struct JournalBus {
+  explicit JournalBus(std::unique_ptr<terra::bus::Bus> opened,
+                      std::int64_t session)
+      : bus(std::move(opened)), out(*bus, session) {}
+
+  std::unique_ptr<terra::bus::Bus> bus;
+  terra::bus::Outbox out;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
   terra::verifier::GateOptions gate;
   std::optional<terra::bus::AdviceReceiver> receiver;
+  std::optional<JournalBus> journal;
   terra::bus::ProcessSpec spec;
   spec.program = "terra-verifier";
   spec.name = "verifier";
@@ -56,6 +68,12 @@ int main(int argc, char** argv) {
       node->ListenToAdvice();
       return std::unique_ptr<terra::bus::Node>(std::move(node));
     }
+    const auto journal_url = context.bus.JournalUrl();
+    if (!journal_url) return journal_url.error();
+    auto journal_bus = terra::bus::Bus::Open(*journal_url, context.channels);
+    if (!journal_bus) return journal_bus.error();
+    journal.emplace(*std::move(journal_bus), context.out.session());
+    node->WriteJournalTo(journal->out);
     auto opened = terra::bus::AdviceReceiver::Open(
         context.bus.advice_url,
         context.channels.name(terra::bus::Channel::kAdvice), kLimits);

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "bus/request_tracker.h"
+#include "terrain/digest.h"
 #include "verifier/gate_codec.h"
 
 namespace terra::verifier {
@@ -14,6 +15,7 @@ namespace {
 using terra_msg::advice_t;
 using terra_msg::baseline_t;
 using terra_msg::deployed_t;
+using terra_msg::gate_step_t;
 using terra_msg::verdict_t;
 
 // A planner says a baseline again at once when it has heard no answer; later
@@ -26,6 +28,13 @@ std::int64_t Microseconds(bus::Time time) {
       .count();
 }
 
+AdviceEvent HeardAs(const advice_t& message,
+                    std::span<const std::uint8_t> bytes) {
+  AdviceEvent event = ToEvent(message);
+  event.heard = {message.session, message.seq, BytesDigest(bytes)};
+  return event;
+}
+
 GateOptions WithSession(GateOptions options, std::int64_t session) {
   if (options.session == 0) options.session = session;
   return options;
@@ -34,9 +43,13 @@ GateOptions WithSession(GateOptions options, std::int64_t session) {
 }  // namespace
 
 VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
-    : replays_(options.session != 0),
-      gate_(WithSession(options, out.session())),
+    : options_(WithSession(options, out.session())),
+      replays_(options.session != 0),
+      gate_(options_),
+      core_(NamesOf(gate_)),
       out_(out),
+      journal_(out),
+      player_(options_.session),
       map_(out) {
   Listen<terra_msg::map_header_t>([this](const auto& message, bus::Time now) {
     if (map_.OnHeader(message, now)) OnMap(now);
@@ -48,20 +61,26 @@ VerifierNode::VerifierNode(GateOptions options, bus::Outbox& out)
     if (const auto asked = bus::RequestOf(message); !asked) {
       CountMalformed(bus::Channel::kPlanRequest, asked.error().message);
     } else {
-      Decide(ToEvent(message), now);
+      Hear(ToEvent(message), message, now);
     }
   });
   Listen<baseline_t>([this](const auto& message, bus::Time now) {
     OnBaseline(message, now);
   });
   Listen<terra_msg::pose_t>([this](const auto& message, bus::Time now) {
-    Decide(ToEvent(message), now);
+    Hear(ToEvent(message), message, now);
   });
+  if (replays_) {
+    Listen<gate_step_t>([this](const auto& message, bus::Time now) {
+      OnStep(message, now);
+    });
+  }
 }
 
 void VerifierNode::ListenToAdvice() {
   Listen<advice_t>([this](const auto& message, bus::Time now) {
-    OnAdvice(static_cast<SenderId>(message.session), ToEvent(message), now);
+    OnAdvice(static_cast<SenderId>(message.session),
+             HeardAs(message, bus::Encode(message)), now);
   });
 }
 
@@ -70,7 +89,8 @@ void VerifierNode::OnAdviceBytes(SenderId sender,
                                  bus::Time now) {
   const Result<advice_t> message = bus::Decode<advice_t>(bytes);
   if (message) {
-    OnAdvice(sender, ToEvent(*message), now);
+    const auto size = static_cast<std::size_t>(message->getEncodedSize());
+    OnAdvice(sender, HeardAs(*message, bytes.first(size)), now);
   } else {
     ++malformed_advice_;
     advice_error_ = "advice: " + message.error().message;
@@ -80,7 +100,7 @@ void VerifierNode::OnAdviceBytes(SenderId sender,
 // What gets no verdict costs little and takes nobody's turn.
 void VerifierNode::OnAdvice(SenderId sender, AdviceEvent event, bus::Time now) {
   if (replays_ || !gate_.WouldJudge(event)) {
-    Decide(event, now);
+    Hear(event, now);
   } else {
     queue_.Add(sender, std::move(event));
   }
@@ -88,7 +108,7 @@ void VerifierNode::OnAdvice(SenderId sender, AdviceEvent event, bus::Time now) {
 
 bus::Time VerifierNode::JudgeOne(bus::Time now) {
   if (queue_.size() == 0) return bus::kNever;
-  if (const auto advice = queue_.Next(Microseconds(now))) Decide(*advice, now);
+  if (const auto advice = queue_.Next(Microseconds(now))) Hear(*advice, now);
   const std::int64_t next_us = queue_.next_us();
   if (next_us == AdviceQueue::kNever) return bus::kNever;
   if (next_us <= Microseconds(now)) return now;
@@ -97,15 +117,40 @@ bus::Time VerifierNode::JudgeOne(bus::Time now) {
 
 void VerifierNode::OnMap(bus::Time now) {
   const bus::MapPtr held = map_.map();
-  Decide(MapEvent{std::shared_ptr<const TerrainMap>(held, &held->map),
-                  held->map_id},
-         now);
+  if (replays_) player_.Take(held);
+  const MapEvent event{std::shared_ptr<const TerrainMap>(held, &held->map),
+                       held->map_id};
+  Hear(event, event, now);
+  PlayJournal(now);
+}
+
+// Whoever played inputs to this gate before the first step began elsewhere.
+void VerifierNode::OnStep(const gate_step_t& message, bus::Time now) {
+  if (player_.Take(message)) {
+    gate_ = Gate(options_);
+    core_ = NamesOf(gate_);
+    journal_.StartOver();
+  }
+  PlayJournal(now);
+}
+
+void VerifierNode::PlayJournal(bus::Time now) {
+  while (const auto next = player_.Next()) {
+    std::visit(
+        [&](const auto& event) {
+          Decide(event, now, next->now_us, [&next] {
+            return next->in_journal;
+          });
+        },
+        next->event);
+    if (core_.digest != next->core_after) ++replay_differs_;
+  }
 }
 
 void VerifierNode::OnBaseline(const baseline_t& message, bus::Time now) {
   if (!planner_.Accept(message.session, message.seq)) return;
   const std::int64_t decision = gate_.deployed().decision;
-  Decide(ToEvent(message), now);
+  Hear(ToEvent(message), message, now);
   // The answer was perhaps lost, and the robot's copy of it too.
   const bool answered =
       gate_.deployed().decision == decision && gate_.deployed().has_route() &&
@@ -117,8 +162,19 @@ void VerifierNode::OnBaseline(const baseline_t& message, bus::Time now) {
   }
 }
 
-template <typename Event>
-void VerifierNode::Decide(const Event& event, bus::Time now) {
+template <typename Event, typename Message>
+void VerifierNode::Hear(const Event& event, const Message& message,
+                        bus::Time now) {
+  if (player_.plays()) return;
+  Decide(event, now, Microseconds(now), [&message] {
+    return InJournal(message);
+  });
+}
+
+template <typename Event, typename InJournal>
+void VerifierNode::Decide(const Event& event, bus::Time now,
+                          std::int64_t now_us, const InJournal& in_journal) {
+  const std::int64_t remembered = gate_.num_remembered();
   const auto begin = bus::Clock::now();
   const Decisions decisions = gate_.On(event);
   const auto t_det = std::chrono::duration_cast<std::chrono::microseconds>(
@@ -129,6 +185,14 @@ void VerifierNode::Decide(const Event& event, bus::Time now) {
     } else {
       Send(std::get<Deployed>(decision), now);
     }
+  }
+  const CoreNames before = std::exchange(core_, NamesOf(gate_));
+  if (!decisions.empty() || core_ != before ||
+      gate_.num_remembered() != remembered) {
+    JournalEvent event_in_journal = in_journal();
+    journal_.Write(ToStep(event_in_journal, gate_.lookup(), now_us, before,
+                          decisions, core_.digest),
+                   std::move(event_in_journal.bytes));
   }
 }
 
@@ -189,6 +253,15 @@ void VerifierNode::AddCounters(bus::Counters& counters) const {
   counters.emplace_back("advice_waiting",
                         static_cast<std::int64_t>(queue_.size()));
   counters.emplace_back("advice_without_room", queue_.dropped());
+  counters.emplace_back("journal_steps", journal_.steps());
+  counters.emplace_back("journal_without_bytes", journal_.without_bytes());
+  counters.emplace_back("journal_left_out", journal_.left_out());
+  if (player_.plays()) {
+    counters.emplace_back("replay_waiting",
+                          static_cast<std::int64_t>(player_.waiting()));
+    counters.emplace_back("replay_missing", player_.missing());
+    counters.emplace_back("replay_differs", replay_differs_);
+  }
   counters.emplace_back("lost", static_cast<std::int64_t>(map_.sender().lost() +
                                                           planner_.lost()));
   counters.emplace_back("from_replaced_planner", planner_.from_replaced());

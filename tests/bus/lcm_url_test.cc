@@ -114,6 +114,22 @@ TEST(BusOptionsTest, AnAdviceBusInAnotherSpellingIsTheSameBus) {
   EXPECT_FALSE(options.OneBus());
 }
 
+TEST(BusOptionsTest, TheJournalHasAPortOfItsOwnWhereThereAreTwoBuses) {
+  BusOptions options;
+  options.lcm_url = "udpm://:7700";
+  ASSERT_TRUE(options.Complete().ok());
+  EXPECT_EQ(*options.JournalUrl(), "udpm://239.255.76.67:7702");
+  options.advice_url = "udpm://:7702";
+  ASSERT_TRUE(options.Complete().ok());
+  const auto taken = options.JournalUrl();
+  ASSERT_FALSE(taken.ok());
+  EXPECT_NE(taken.error().message.find("choose another port"),
+            std::string::npos);
+  options.advice_url = options.lcm_url;
+  ASSERT_TRUE(options.Complete().ok());
+  EXPECT_EQ(*options.JournalUrl(), options.lcm_url);
+}
+
 TEST(BusOptionsTest, OnlyAnUdpmBusCanBeApartFromTheDeployedOne) {
   BusOptions options;
   options.lcm_url = "tcpq://127.0.0.1:7700";

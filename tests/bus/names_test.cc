@@ -44,6 +44,15 @@ TEST(LcmUrlTest, AdviceGoesToTheNextPort) {
   EXPECT_FALSE(AdviceUrlFor("udpm://239.255.76.67:65535").ok());
 }
 
+TEST(LcmUrlTest, TheJournalGoesToThePortAfterThat) {
+  EXPECT_EQ(*JournalUrlFor("udpm://239.255.76.67:7667?ttl=0"),
+            "udpm://239.255.76.67:7669?ttl=0");
+  EXPECT_EQ(*JournalUrlFor("udpm://:65533"), "udpm://239.255.76.67:65535");
+  EXPECT_EQ(*JournalUrlFor("memq://"), "memq://");
+  EXPECT_FALSE(JournalUrlFor("udpm://239.255.76.67:65534").ok());
+  EXPECT_FALSE(JournalUrlFor("no url").ok());
+}
+
 TEST(LcmUrlTest, RefusesWhatLcmWouldMisread) {
   EXPECT_FALSE(ParseLcmUrl("239.255.76.67:7667").ok());
   EXPECT_FALSE(ParseLcmUrl("udpm://10.0.0.1:7667").ok());

@@ -75,8 +75,7 @@ std::optional<std::string> FlipCheck::WhatIsWrong(Place place, int bit) {
 
 bool FlipCheck::Irrelevant(Place place, const bus::RawMessage& changed) {
   const bus::RawMessage& honest = messages_.at(place.message);
-  return DecidesTheSame(honest, changed, messages_) ||
-         NothingFollowsFrom(place.message);
+  return DecidesTheSame(honest, changed) || NothingFollowsFrom(place.message);
 }
 
 // Without the message every decision follows all the same.

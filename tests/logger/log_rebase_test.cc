@@ -16,23 +16,23 @@ constexpr std::int64_t kGap = 5'000'000;
 
 std::vector<std::int64_t> PutAll(const std::vector<std::int64_t>& times,
                                  std::int64_t jumps) {
-  TimeLine line(kGap);
+  EvenTime line(kGap);
   std::vector<std::int64_t> put;
   for (const std::int64_t time : times) put.push_back(line.Put(time));
   EXPECT_EQ(line.jumps(), jumps);
   return put;
 }
 
-TEST(TimeLine, KeepsTimesThatGoOnBySmallSteps) {
+TEST(EvenTime, KeepsTimesThatGoOnBySmallSteps) {
   EXPECT_THAT(PutAll({7, 7, 10, 10 + kGap}, 0),
               ElementsAre(7, 7, 10, 10 + kGap));
 }
 
-TEST(TimeLine, StandsWhereTheClockRanBack) {
+TEST(EvenTime, StandsWhereTheClockRanBack) {
   EXPECT_THAT(PutAll({100, 40, 50}, 1), ElementsAre(100, 100, 110));
 }
 
-TEST(TimeLine, ShortensAJumpAhead) {
+TEST(EvenTime, ShortensAJumpAhead) {
   EXPECT_THAT(PutAll({0, kGap + 1, kGap + 2}, 1),
               ElementsAre(0, kGap, kGap + 1));
   // A clock that begins in 1970 and is set.
@@ -40,14 +40,14 @@ TEST(TimeLine, ShortensAJumpAhead) {
               ElementsAre(30'000'000, 30'000'000 + kGap));
 }
 
-TEST(TimeLine, TakesAnyNumbers) {
+TEST(EvenTime, TakesAnyNumbers) {
   constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
   EXPECT_THAT(PutAll({kLeast, kMost, kLeast, -5, kMost}, 4),
               ElementsAre(0, kGap, kGap, 2 * kGap, 3 * kGap));
   EXPECT_THAT(PutAll({kMost, 0, 10}, 1),
-              ElementsAre(TimeLine::kLatestUs, TimeLine::kLatestUs,
-                          TimeLine::kLatestUs));
+              ElementsAre(EvenTime::kLatestUs, EvenTime::kLatestUs,
+                          EvenTime::kLatestUs));
 }
 
 TEST(RebaseLog, WritesEventsAnewWithoutTheRecordersMarks) {

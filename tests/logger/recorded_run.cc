@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <gtest/gtest.h>
 
 #include "bus/codec.h"
 #include "bus/map_node.h"
+#include "logger/recorder.h"
 #include "planner/planner_node.h"
 #include "terrain/builtin_legends.h"
 #include "terrain/files/map_file.h"
@@ -31,6 +33,11 @@ const Route kOverTheTop = {
 const Route kHigherUp = {
     RecordedRun::kStart, {69, 28}, {90, 28}, RecordedRun::kGoal};
 const Route kThroughTheBar = {RecordedRun::kStart, RecordedRun::kGoal};
+// From one message of a log to the next; for so long the recorder heard others
+// after them.
+constexpr std::int64_t kBetweenUs = 1'000;
+constexpr std::int64_t kOthersUs = 5'000'000;
+
 const Route kOutside = {RecordedRun::kStart, {400, 3}, RecordedRun::kGoal};
 
 }  // namespace
@@ -245,20 +252,54 @@ Messages RandomRun(std::uint64_t seed) {
   return run.messages();
 }
 
+std::int64_t DecisionsIn(const Messages& messages) {
+  std::map<std::int64_t, std::int64_t> last;
+  for (const terra_msg::verdict_t& verdict :
+       Said<terra_msg::verdict_t>(messages)) {
+    last[verdict.session] = std::max(last[verdict.session], verdict.decision);
+  }
+  for (const deployed_t& deployed : Said<deployed_t>(messages)) {
+    last[deployed.session] =
+        std::max(last[deployed.session], deployed.decision);
+  }
+  std::int64_t all = 0;
+  for (const auto& [session, decisions] : last) all += decisions;
+  return all;
+}
+
 std::vector<std::uint8_t> LogOf(const Messages& messages) {
   std::vector<std::uint8_t> bytes;
   std::int64_t number = 0;
   for (const bus::RawMessage& message : messages) {
-    AppendLogEvent(bytes, {number, 1'000 * number,
+    AppendLogEvent(bytes, {number, kBetweenUs * number,
                            bus::BaseName(message.channel), message.bytes});
     ++number;
   }
+  AppendLogEvent(bytes,
+                 {number, kBetweenUs * number + kOthersUs, "OTHERS", {}});
   return bytes;
 }
 
 Audit AuditOf(const Messages& messages) {
   const std::vector<std::uint8_t> bytes = LogOf(messages);
   LogReader reader(bytes);
+  return AuditLog(reader);
+}
+
+Audit AuditOfRecording(const Messages& messages) {
+  const testing::TempFolder folder;
+  Recorder recorder = Recorder::Start(folder.Path(""), {}, 0).value();
+  const std::string path = recorder.path();
+  std::int64_t now_us = 0;
+  for (const bus::RawMessage& message : messages) {
+    recorder.Record(
+        {now_us, std::string(bus::BaseName(message.channel)), message.bytes});
+    now_us += kBetweenUs;
+  }
+  now_us += kOthersUs;
+  recorder.Record({now_us, "OTHERS", {}});
+  EXPECT_TRUE(recorder.Close(now_us).ok());
+  LogReader reader = LogReader::Open(path).value();
   return AuditLog(reader);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bus/codec.h"
@@ -45,11 +46,20 @@ class RecordedRun {
   void AdviseFrom(const terra_msg::deployed_t& deployed, int index);
   void DriveTo(const terra_msg::deployed_t& deployed, int index);
 
+  /// Says something, and waits for what comes of it.
   template <typename T>
   void Inject(T message) {
+    Say(std::move(message));
+    network_.Run(std::chrono::milliseconds(300));
+  }
+  /// Says something as the next of many.
+  template <typename T>
+  void Say(T message) {
     message.seq = ++said_;
     network_.Inject(message);
-    network_.Run(std::chrono::milliseconds(300));
+  }
+  void SayAgain(const bus::RawMessage& message) {
+    network_.InjectBytes(message.channel, message.bytes);
   }
   void Run(bus::Duration duration) { network_.Run(duration); }
 
@@ -72,9 +82,14 @@ Messages EventfulRun();
 /// The same by chance.
 Messages RandomRun(std::uint64_t seed);
 
+/// How many decisions the gates made.
+std::int64_t DecisionsIn(const Messages& messages);
+
 /// An event log without seals, as LCM's own logger writes it.
 std::vector<std::uint8_t> LogOf(const Messages& messages);
 Audit AuditOf(const Messages& messages);
+/// The same of the log that a recorder of ours writes, with its seals.
+Audit AuditOfRecording(const Messages& messages);
 
 /// The findings, to be read when a test fails.
 std::string Text(const Audit& audit);

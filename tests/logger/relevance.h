@@ -6,8 +6,8 @@ namespace terra::logger {
 
 /// Returns whether a changed message gives the gate and the audit nothing else
 /// to decide on than the honest one: the change is in what invariant 6 leaves
-/// out, in what no decision reads, or leaves every verdict as it was.
+/// out, or in what no decision reads.
 bool DecidesTheSame(const bus::RawMessage& honest,
-                    const bus::RawMessage& changed, const Messages& messages);
+                    const bus::RawMessage& changed);
 
 }  // namespace terra::logger

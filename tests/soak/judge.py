@@ -45,9 +45,10 @@ def _grown(row):
 
 
 def audit_logs(terra, folder):
-    """Audits each log. Returns the sums and what is not explained by the log itself."""
-    sums = {"logs": 0, "clean": 0, "verdicts": 0, "deployed": 0, "unrecorded": 0, "notes": 0,
-            "explained": {}}
+    """Audits each log. Returns the sums, and the findings but for what the recorder lost."""
+    counts = ("steps", "verdicts", "deployed", "anchors", "unchecked", "unrecorded",
+              "lookups_given")
+    sums = {"logs": 0, "clean": 0, "notes": 0, **dict.fromkeys(counts, 0), "lost": {}}
     failures = []
     for log in sorted(folder.glob("*.lcmlog")):
         audit = _json([terra, "log", "audit", log, "--json"])
@@ -57,13 +58,13 @@ def audit_logs(terra, folder):
             continue
         sums["logs"] += 1
         sums["clean"] += audit["clean"]
-        for key in ("verdicts", "deployed", "unrecorded"):
+        for key in counts:
             sums[key] += audit[key]
         sums["notes"] += len(audit["notes"])
         for finding in audit["findings"]:
-            if _explained(finding, audit, info):
+            if _lost_by_recorder(finding, info):
                 kind = finding["kind"]
-                sums["explained"][kind] = sums["explained"].get(kind, 0) + 1
+                sums["lost"][kind] = sums["lost"].get(kind, 0) + 1
             else:
                 failures.append(f"{log.name}: {finding['kind']}, decision "
                                 f"{finding['decision']}: {finding['what']}")
@@ -78,25 +79,15 @@ def _json(command):
         return None
 
 
-def _explained(finding, audit, info):
-    kind, what = finding["kind"], finding["what"]
-    if kind == "damage":
-        # Killed between a write and its seal.
-        return not info["closed"] and "have no seal" in what
-    channels = info["channels"]
-    if kind == "gap":
-        return any(channels.get(name, {}).get("missing", 0) > 0
-                   for name in ("TERRA_VERDICT", "TERRA_DEPLOYED"))
-    # Under a flood gate and recorder look at other parts of it.
-    advice = channels.get("TERRA_ADVICE", {})
-    flooded = advice.get("missing", 0) + advice.get("malformed", 0) > 0
-    if kind == "missing input" and "ADVICE" in what:
-        return flooded
-    if kind == "mismatch":
-        # An advisor was impersonated (the audit notes say so): of two messages
-        # under its name the log lacks the one that was judged. That explains no
-        # verdict about where the robot was or what was in force.
-        return (flooded and bool(audit["notes"]) and "VERDICT" in what
-                and "late" not in what and "stale" not in what)
-    # It may stand in the log before, where this one begins in mid-run.
-    return kind == "missing input" and audit["anchors"] > 0
+# Where the numbers of their senders show that messages are missing in a log.
+_CHANNELS_OF = {"gap": ("TERRA_GATE_STEP", "TERRA_VERDICT", "TERRA_DEPLOYED"),
+                "missing input": ("TERRA_MAP_HEADER", "TERRA_MAP_TILE")}
+
+
+def _lost_by_recorder(finding, info):
+    """The soak kills and stops the recorder. What that costs, the log says by itself: its end
+    has no seal, or numbers are missing."""
+    if finding["kind"] == "damage":
+        return not info["closed"] and "have no seal" in finding["what"]
+    return any(info["channels"].get(channel, {}).get("missing", 0) > 0
+               for channel in _CHANNELS_OF.get(finding["kind"], ()))

@@ -176,8 +176,8 @@ class Soak:
     def judge(self):
         saw = self.watch
         rows, grown = judge.flatness(self.usage)
-        audit, unexplained = judge.audit_logs(self.bin / "terra", self.folder / "log")
-        self.failures += grown + unexplained
+        audit, findings = judge.audit_logs(self.bin / "terra", self.folder / "log")
+        self.failures += grown + findings
         self.failures += [f"DEPLOYED {one}" for one in saw.violations]
         self.failures += [f"no route within {watch.ROUTE_WITHIN_S:g} s: {self._told(one)}"
                           for one in saw.unserved]
@@ -262,7 +262,7 @@ def main():
     arguments = parse()
     if arguments.port is None:
         in_own_network()  # returns only where it is not allowed
-        arguments.port = 20_000 + 2 * (os.getpid() % 5_000)
+        arguments.port = 20_000 + 3 * (os.getpid() % 3_300)
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="terra-soak-")).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "log").mkdir()

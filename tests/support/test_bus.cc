@@ -86,12 +86,13 @@ std::unique_ptr<bus::Bus> OpenBus(const std::string& url,
 
 TestBus::TestBus() : in_own_namespace_(EnterOwnNamespace()) {
   constexpr int kFirstPort = 30000;
-  constexpr int kPairs = 2000;
-  for (int i = 0; i < kPairs && lock_fd_ < 0; ++i) {
-    port_ = kFirstPort + 2 * ((::getpid() + i) % kPairs);
+  constexpr int kStep = 3;  // deployed bus, advice, journal
+  constexpr int kBuses = 1300;
+  for (int i = 0; i < kBuses && lock_fd_ < 0; ++i) {
+    port_ = kFirstPort + kStep * ((::getpid() + i) % kBuses);
     lock_fd_ = LockPorts(port_);
   }
-  if (lock_fd_ < 0) throw std::runtime_error("no free pair of test ports");
+  if (lock_fd_ < 0) throw std::runtime_error("no free test ports");
   url_ = UrlOf(port_);
   advice_url_ = UrlOf(port_ + 1);
 }

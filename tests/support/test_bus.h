@@ -15,10 +15,11 @@
 
 namespace terra::testing {
 
-/// A pair of buses that no other test or robot on this host hears.
+/// The buses of one robot, which no other test or robot on this host hears.
 ///
 /// Moves the test into a network namespace of its own where the kernel allows
-/// it; else takes a pair of ports that no other test has.
+/// it; else takes three ports that no other test has: deployed bus,
+/// advice, journal.
 class TestBus {
  public:
   TestBus();

@@ -10,6 +10,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,6 +20,7 @@
 #include "terrain/digest.h"
 #include "tests/verifier/gate_oracle.h"
 #include "tests/verifier/gate_trace.h"
+#include "verifier/gate_core.h"
 #include "verifier/verify.h"
 
 namespace terra::verifier {
@@ -169,6 +172,43 @@ RC_GTEST_PROP(GatePropertyTest, TheSameEventsGiveTheSameDecisions, ()) {
   Gate gate{kTraceOptions};
   for (const Turn& turn : AnyTrace()) {
     RC_ASSERT(Feed(gate, turn.event) == turn.decisions);
+  }
+}
+
+GateState StateOf(const Gate& gate, std::shared_ptr<const TerrainMap> map) {
+  GateState state;
+  state.request = gate.request();
+  state.answered_by = gate.answered_by();
+  state.map = std::move(map);
+  state.map_id = gate.map_id();
+  if (gate.baseline() != nullptr) state.baseline = *gate.baseline();
+  state.deployed = gate.deployed();
+  state.place = gate.driven().place();
+  state.on_route = gate.driven().on_route();
+  state.decisions = gate.decisions();
+  return state;
+}
+
+Decisions FeedGiven(Gate& gate, const Event& event, Lookup lookup) {
+  const auto* advice = std::get_if<AdviceEvent>(&event);
+  return advice != nullptr ? gate.OnGiven(*advice, lookup) : Feed(gate, event);
+}
+
+// The core is all that decides, and the digest is all of the core: so a step of
+// the journal can be checked without the steps before it.
+RC_GTEST_PROP(GatePropertyTest, FromTheSameCoreFollowsTheSame, ()) {
+  Gate gate{kTraceOptions};
+  for (const Turn& turn : AnyTrace()) {
+    std::optional<Gate> other =
+        Gate::GoOnFrom(kTraceOptions, StateOf(gate, turn.before.map));
+    RC_ASSERT(other.has_value());
+    const std::int64_t before = CoreDigest(gate);
+    RC_ASSERT(CoreDigest(*other) == before);
+    const Decisions decisions = Feed(gate, turn.event);
+    const bool is_step = !decisions.empty() || CoreDigest(gate) != before;
+    if (!is_step) continue;
+    RC_ASSERT(FeedGiven(*other, turn.event, gate.lookup()) == decisions);
+    RC_ASSERT(CoreDigest(*other) == CoreDigest(gate));
   }
 }
 

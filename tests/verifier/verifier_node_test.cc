@@ -2,11 +2,14 @@
 // decisions are Gate's and tested there.
 #include "verifier/verifier_node.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -27,6 +30,7 @@ using std::chrono::milliseconds;
 using terra_msg::advice_t;
 using terra_msg::baseline_t;
 using terra_msg::deployed_t;
+using terra_msg::gate_step_t;
 using terra_msg::plan_request_t;
 using terra_msg::pose_t;
 using terra_msg::verdict_t;
@@ -46,6 +50,8 @@ class VerifierNodeTest : public ::testing::Test, public bus::Transport {
       verdicts_.push_back(bus::Decode<verdict_t>(bytes).value());
     } else if (channel == bus::Channel::kDeployed) {
       deployed_.push_back(bus::Decode<deployed_t>(bytes).value());
+    } else if (channel == bus::Channel::kGateStep) {
+      steps_.push_back(bus::Decode<gate_step_t>(bytes).value());
     }
     return true;
   }
@@ -148,6 +154,7 @@ class VerifierNodeTest : public ::testing::Test, public bus::Transport {
   std::int64_t attempt_ = 0;
   std::vector<verdict_t> verdicts_;
   std::vector<deployed_t> deployed_;
+  std::vector<gate_step_t> steps_;
   bus::Outbox out_{*this, kSession};
   VerifierNode node_{{}, out_};
 };
@@ -454,6 +461,137 @@ TEST_F(VerifierNodeTest, AReplayJudgesAdviceInOrderOfArrival) {
   hear(BaselineOf(1, kStraight));
   hear(AdviceOf(kTop));
   EXPECT_EQ(verdicts_.size(), 1u) << "before any turn";
+}
+
+// ---- The journal ----
+
+TEST_F(VerifierNodeTest, WritesAStepOfEachEventThatMatters) {
+  HearMap();
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  Hear(RequestOf(1, plan_request_t::ACTION_GO));
+  Hear(BaselineOf(1, kStraight));
+  Hear(BaselineOf(1, kStraight));  // a repetition, with a new number
+  const advice_t advice = AdviceOf(kTop);
+  Advise(advice);
+  Advise(advice);
+  pose_t pose{};
+  pose.deployed_session = kSession;
+  pose.deployed_route_seq = 1;  // of another route
+  Hear(pose);
+  std::vector<int> kinds;
+  std::vector<int> decisions;
+  for (const gate_step_t& step : steps_) {
+    EXPECT_EQ(step.step, std::ssize(kinds) + 1);
+    EXPECT_EQ(step.session, kSession);
+    kinds.push_back(step.kind);
+    decisions.push_back(step.num_decisions);
+  }
+  EXPECT_EQ(kinds, (std::vector<int>{
+                       gate_step_t::KIND_MAP, gate_step_t::KIND_REQUEST,
+                       gate_step_t::KIND_BASELINE, gate_step_t::KIND_ADVICE}));
+  EXPECT_EQ(decisions, (std::vector<int>{0, 1, 1, 2}));
+  EXPECT_EQ(Counter("journal_steps"), 4);
+  // A pose that moves the robot decides nothing and counts.
+  pose.pose_x = 1;
+  pose.deployed_route_seq = deployed_.back().route_seq;
+  Hear(pose);
+  ASSERT_EQ(steps_.size(), 5u);
+  EXPECT_EQ(steps_[4].kind, gate_step_t::KIND_POSE);
+  EXPECT_NE(steps_[4].core_before, steps_[4].core_after);
+}
+
+TEST_F(VerifierNodeTest, AStepSaysWhatItsEventWas) {
+  GetReady();
+  const deployed_t in_force = deployed_.back();
+  const advice_t advice = AdviceOf(kTop);
+  now_ += milliseconds(5);
+  Send(1, advice);
+  node_.Advance(now_);
+  const gate_step_t& step = steps_.back();
+  EXPECT_EQ(step.now_us, std::chrono::duration_cast<std::chrono::microseconds>(
+                             now_.time_since_epoch())
+                             .count());
+  EXPECT_EQ(step.lookup, gate_step_t::LOOKUP_NEW);
+  EXPECT_EQ(step.event_session, advice.session);
+  EXPECT_EQ(step.event_seq, advice.seq);
+  EXPECT_EQ(step.event_digest, BytesDigest(bus::Encode(advice)));
+  EXPECT_EQ(step.decision, in_force.decision);
+  EXPECT_EQ(step.map_id, map_id_);
+  EXPECT_EQ(step.request_id, 1);
+  EXPECT_EQ(step.route_seq, in_force.route_seq);
+  const auto heard = bus::Decode<advice_t>(step.event_bytes);
+  ASSERT_TRUE(heard.ok());
+  EXPECT_EQ(bus::WaypointsOf(*heard), kTop);
+}
+
+// It changes the gate's memory and nothing else.
+TEST_F(VerifierNodeTest, ACancelOfARequestThatDidNotComeIsAStep) {
+  GetReady();
+  const std::size_t before = steps_.size();
+  Hear(RequestOf(7, plan_request_t::ACTION_CANCEL));
+  ASSERT_EQ(steps_.size(), before + 1);
+  EXPECT_EQ(steps_.back().core_before, steps_.back().core_after);
+  Hear(RequestOf(7, plan_request_t::ACTION_CANCEL));
+  EXPECT_EQ(steps_.size(), before + 1);
+}
+
+TEST_F(VerifierNodeTest, TheJournalGoesToABusOfItsOwn) {
+  struct Other : bus::Transport {
+    bool Publish(bus::Channel channel, std::span<const std::uint8_t>) override {
+      EXPECT_EQ(channel, bus::Channel::kGateStep);
+      ++steps;
+      return true;
+    }
+    int steps = 0;
+  } other;
+  bus::Outbox journal{other, kSession};
+  node_.WriteJournalTo(journal);
+  GetReady();
+  EXPECT_EQ(other.steps, 2);
+  EXPECT_TRUE(steps_.empty());
+}
+
+// With the first step of the session the gate begins anew, and from then on
+// hears nothing else.
+TEST_F(VerifierNodeTest, PlaysAJournalAndNothingElse) {
+  GetReady();
+  Advise(AdviceOf(kTop));
+  const std::vector<gate_step_t> journal = std::exchange(steps_, {});
+  const std::vector<deployed_t> said = std::exchange(deployed_, {});
+  verdicts_.clear();
+  bus::Outbox out{*this, kSession + 1};
+  VerifierNode replay{{.session = kSession}, out};
+  const auto hear = [&](const auto& message) {
+    using T = std::decay_t<decltype(message)>;
+    replay.Receive({bus::MessageTraits<T>::kChannel, bus::Encode(message)},
+                   now_);
+  };
+  terra_msg::map_header_t header = bus::MakeMapHeader(Field());
+  header.session = 4;
+  header.seq = 1;
+  hear(header);
+  hear(testing::AllTiles(Field()));
+  hear(BaselineOf(1, kBottom));  // as an input, before the journal
+  deployed_.clear();
+  for (const gate_step_t& step : journal) hear(step);
+  hear(RequestOf(2, plan_request_t::ACTION_GO));
+  ASSERT_EQ(deployed_.size(), said.size());
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    EXPECT_EQ(deployed_[i].decision, said[i].decision);
+    EXPECT_EQ(deployed_[i].route_seq, said[i].route_seq);
+    EXPECT_EQ(bus::WaypointsOf(deployed_[i]), bus::WaypointsOf(said[i]));
+  }
+  ASSERT_EQ(verdicts_.size(), 1u);
+  EXPECT_EQ(verdicts_[0].code, verdict_t::CODE_ACCEPTED);
+  bus::Counters counters;
+  replay.AddCounters(counters);
+  for (const char* name :
+       {"replay_waiting", "replay_missing", "replay_differs"}) {
+    EXPECT_EQ(std::ranges::count(counters,
+                                 std::pair(std::string(name), std::int64_t{0})),
+              1)
+        << name;
+  }
 }
 
 TEST_F(VerifierNodeTest, TakesAdviceOffTheDeployedBusOnlyWhenTold) {

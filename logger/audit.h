@@ -59,8 +59,9 @@ struct Audit {
   bool closed = true;
 
   bool clean() const { return num_findings == 0; }
-  /// Some decision was made again.
-  bool made_any_again() const { return verdicts + deployed + anchors > 0; }
+  /// Some decision was made again. (A state that the log begins with is proved,
+  /// and is no decision.)
+  bool made_any_again() const { return verdicts + deployed > 0; }
   /// No finding, in a whole log, of which something was made again. Only this
   /// says that the gate was right.
   bool passed() const { return clean() && closed && made_any_again(); }

@@ -115,7 +115,7 @@ Where all that is needed is there without these packages, start with --no-instal
 
 # build PRESET TARGET...: configures and builds, quiet unless it fails.
 build() {
-  local preset=$1 log="$root/build/$1.log"
+  local preset=$1 log="$root/build/$1.log" begin=$SECONDS
   shift
   # Where nothing can be written, what an earlier build left would be run.
   { mkdir -p "$root/build" && (: >>"$log"); } 2>/dev/null ||
@@ -129,6 +129,7 @@ to where you may write, and start it there."
       head -n 60 >&2 || true
     fail "the build failed; the whole output is in $log"
   }
+  say "  built ($preset) in $((SECONDS - begin)) s"
 }
 cmake_options=()
 

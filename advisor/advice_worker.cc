@@ -38,7 +38,7 @@ AdviceWorker::AdviceWorker(std::unique_ptr<Backend> backend,
 void AdviceWorker::Start(Job job) {
   const std::lock_guard lock(mutex_);
   current_.request_stop();
-  done_.reset();
+  finished_.reset();
   waiting_ = std::move(job);
   changed_.notify_all();
 }
@@ -47,12 +47,12 @@ void AdviceWorker::Cancel() {
   const std::lock_guard lock(mutex_);
   current_.request_stop();
   waiting_.reset();
-  done_.reset();
+  finished_.reset();
 }
 
-std::optional<AdviceWorker::Done> AdviceWorker::Take() {
+std::optional<AdviceWorker::Finished> AdviceWorker::Take() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(done_, std::nullopt);
+  return std::exchange(finished_, std::nullopt);
 }
 
 bool AdviceWorker::busy() const {
@@ -95,7 +95,7 @@ void AdviceWorker::Work(std::stop_token end) {
       const std::lock_guard lock(mutex_);
       busy_ = false;
       if (stop.stop_requested()) continue;
-      done_ = Done{std::move(job), std::move(answer)};
+      finished_ = Finished{std::move(job), std::move(answer)};
     }
     ready_();
   }

@@ -34,7 +34,7 @@ class AdviceWorker {
     Route route;  ///< ... and the route to beat from there to the goal.
     double route_cost = 0;
   };
-  struct Done {
+  struct Finished {
     Job job;
     AdviceAnswer answer;
   };
@@ -43,7 +43,7 @@ class AdviceWorker {
 
   void Start(Job job);
   void Cancel();
-  std::optional<Done> Take();
+  std::optional<Finished> Take();
 
   bool busy() const;
   const Backend& backend() const { return *backend_; }
@@ -56,7 +56,7 @@ class AdviceWorker {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Job> waiting_;
-  std::optional<Done> done_;
+  std::optional<Finished> finished_;
   bool busy_ = false;
   std::stop_source current_;
   std::jthread thread_;  // last: it uses the others

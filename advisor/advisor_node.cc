@@ -148,7 +148,7 @@ void AdvisorNode::StartFrom(const Anchor& anchor, bus::Time now) {
                  cost});
 }
 
-void AdvisorNode::Publish(const AdviceWorker::Done& done, bus::Time now) {
+void AdvisorNode::Publish(const AdviceWorker::Finished& done, bus::Time now) {
   ++answers_;
   work_ = Work::kAnswered;
   answer_time_.Add(Seconds(now - began_));

@@ -38,7 +38,7 @@ class AdvisorNode : public bus::Node {
   void Begin(bus::Time now);
   void StartFrom(const Anchor& anchor, bus::Time now);
   void FollowRobot(bus::Time now);
-  void Publish(const AdviceWorker::Done& done, bus::Time now);
+  void Publish(const AdviceWorker::Finished& done, bus::Time now);
 
   std::string name_;
   bus::Outbox& out_;

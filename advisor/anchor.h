@@ -5,21 +5,11 @@
 #include <cstdint>
 #include <optional>
 
+#include "terrain/anchor.h"
 #include "terrain/cell.h"
 #include "terrain/driven_route.h"
 
 namespace terra::advisor {
-
-/// Where a proposal starts: an index into the dense cells of the deployed route
-/// that session and route_seq name. Index 0, the start, names none.
-struct Anchor {
-  std::int64_t session = 0;
-  std::int64_t route_seq = 0;
-  std::int32_t index = 0;
-  Cell cell;
-
-  friend bool operator==(const Anchor&, const Anchor&) = default;
-};
 
 /// The route to drive, as DEPLOYED says.
 struct DeployedRoute {
@@ -45,7 +35,7 @@ struct AnchorQuestion {
 /// A robot that stands at the start, or of which nothing is heard, gets a
 /// proposal from the start: the paper's case. One that drives gets it from as
 /// far ahead as it comes while the answer is found, and some cells more.
-/// Source: Apollo and GATE.md, for planning from where the robot will be.
+/// Source: Apollo plans from where the robot will be, too.
 /// Pure: time is an argument. Threads: one.
 class AnchorChooser {
  public:

@@ -47,7 +47,7 @@ struct Answer {
 ///       points without outer brackets is read only where no list is. A word
 ///       `yes` anywhere beside a list contradicts it.
 /// Bounded: linear in the answer's length, for any bytes. Threads: reentrant.
-/// Source: paper, LLM-Advisor (prompt); PROTOCOL, Methods.
+/// Source: paper, LLM-Advisor (prompt).
 Answer ParseAnswer(std::string_view text, const AnswerRules& rules = {});
 
 /// Is there nothing in it but white space, as ParseAnswer reads it?

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <string_view>
 
 #include "advisor/terrain_regions.h"
 #include "terrain/segment.h"
+#include "terrain/steps.h"
 
 namespace terra::advisor {
 namespace {
@@ -32,10 +32,6 @@ std::string HexColor(Color color) {
 
 std::string Extent(const TerrainRegion& region) {
   return ToString(region.low) + " to " + ToString(region.high);
-}
-
-double StepLength(Cell from, Cell to) {
-  return from.x != to.x && from.y != to.y ? std::sqrt(2.0) : 1.0;
 }
 
 /// "(u - 32) / 2": a pixel's position as a cell's, of one axis.

@@ -9,12 +9,6 @@ struct evp_md_ctx_st;  // Of OpenSSL.
 
 namespace terra::advisor {
 
-/// RFC 4648 base64 with padding, without line breaks.
-std::string Base64Encode(std::string_view bytes);
-
-/// The reverse; none for anything that Base64Encode would not have written.
-std::optional<std::string> Base64Decode(std::string_view text);
-
 /// SHA-256 in 64 hexadecimal digits.
 std::string Sha256Hex(std::string_view bytes);
 

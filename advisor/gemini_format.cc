@@ -5,6 +5,7 @@
 
 #include "advisor/wire_format.h"
 #include "advisor/wire_json.h"
+#include "base/base64.h"
 
 namespace terra::advisor {
 namespace {

@@ -37,7 +37,7 @@ struct LlmIdentity {
 };
 
 enum class ReplyStatus {
-  kNoAnswer,   ///< Nothing came: no attempt (PROTOCOL, No answer).
+  kNoAnswer,   ///< Nothing came: no attempt.
   kAnswered,   ///< The text is the whole answer; it may be empty or nonsense.
   kTruncated,  ///< Cut by the token limit: an attempt, invalid.
   kRefused,    ///< Refused or blocked by the provider: an attempt, invalid.

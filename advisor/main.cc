@@ -7,9 +7,9 @@
 
 #include "advisor/advisor_node.h"
 #include "advisor/advisor_options.h"
+#include "base/secrets.h"
 #include "bus/log.h"
 #include "bus/process.h"
-#include "bus/secrets.h"
 
 int main(int argc, char** argv) {
   terra::advisor::AdvisorOptions options;
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   };
   spec.make_node = [&](terra::bus::ProcessContext& context)
       -> terra::Result<std::unique_ptr<terra::bus::Node>> {
-    terra::bus::LeaveNoCore();
+    terra::LeaveNoCore();
     auto backend = terra::advisor::MakeBackend(options);
     if (!backend) return backend.error();
     if (const std::string notice = (*backend)->notice(); !notice.empty()) {

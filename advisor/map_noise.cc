@@ -6,29 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "base/split_mix.h"
+
 namespace terra::advisor {
 namespace {
 
 constexpr int kMaxDraws = 100'000;
 
-/// SplitMix64 (Steele, Lea, Flood 2014): <random>'s distributions differ
-/// between libraries, this does not.
-class SplitMix {
- public:
-  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
-  /// Uniform in [0, count), up to a bias that no figure can see.
-  int Below(int count) {
-    state_ += 0x9E3779B97F4A7C15u;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    z ^= z >> 31;
-    return static_cast<int>(z % static_cast<std::uint64_t>(count));
-  }
-
- private:
-  std::uint64_t state_;
-};
+/// Uniform in [0, count), up to a bias that no figure can see.
+int Below(SplitMix64& random, int count) {
+  return static_cast<int>(random.Next() % static_cast<std::uint64_t>(count));
+}
 
 struct Patch {
   int x = 0;
@@ -54,12 +42,12 @@ std::vector<std::uint8_t> IdsOf(const ByteRaster& ids) {
   return found;
 }
 
-Patch DrawPatch(SplitMix& random, int width, int height) {
+Patch DrawPatch(SplitMix64& random, int width, int height) {
   const int side =
-      kMinPatchSide + random.Below(kMaxPatchSide - kMinPatchSide + 1);
+      kMinPatchSide + Below(random, kMaxPatchSide - kMinPatchSide + 1);
   Patch patch{0, 0, std::min(side, width), std::min(side, height)};
-  patch.x = random.Below(width - patch.width + 1);
-  patch.y = random.Below(height - patch.height + 1);
+  patch.x = Below(random, width - patch.width + 1);
+  patch.y = Below(random, height - patch.height + 1);
   return patch;
 }
 
@@ -73,7 +61,7 @@ TerrainMap WithNoise(const TerrainMap& map, const NoiseOptions& options) {
       options.percent / 100 * static_cast<double>(original.size());
   const std::string key =
       std::to_string(options.seed) + ":" + std::string(options.case_id);
-  SplitMix random(XXH64(key.data(), key.size(), 0));
+  SplitMix64 random(XXH64(key.data(), key.size(), 0));
   std::int64_t differing = 0;
   for (int draw = 0; draw < kMaxDraws && choices.size() > 1 &&
                      static_cast<double>(differing) < wanted;
@@ -81,7 +69,7 @@ TerrainMap WithNoise(const TerrainMap& map, const NoiseOptions& options) {
     const Patch patch = DrawPatch(random, map.width(), map.height());
     // Another id than the patch's centre has: one choice less.
     auto pick = static_cast<std::size_t>(
-        random.Below(static_cast<int>(choices.size()) - 1));
+        Below(random, static_cast<int>(choices.size()) - 1));
     if (choices[pick] >=
         ids(patch.y + patch.height / 2, patch.x + patch.width / 2)) {
       ++pick;

@@ -26,8 +26,7 @@ inline constexpr int kMaxPatchSide = 40;
 /// lower percentage are the first ones of a higher. Obstacles may appear and
 /// vanish. Where that share cannot be reached (one terrain only, a tiny map),
 /// it stops after a bounded number of draws.
-/// Deterministic on every machine. Source: PROTOCOL, Methods; the paper leaves
-/// the patches' size open.
+/// Deterministic on every machine. The paper leaves the patches' size open.
 TerrainMap WithNoise(const TerrainMap& map, const NoiseOptions& options);
 
 }  // namespace terra::advisor

@@ -7,12 +7,10 @@
 #include <random>
 #include <utility>
 
-#include <sys/prctl.h>
-#include <sys/resource.h>
-
 #include "advisor/endpoint_url.h"
 #include "advisor/interruptible_wait.h"
 #include "advisor/wire_json.h"
+#include "base/secrets.h"
 #include "terrain/utf8.h"
 
 namespace terra::advisor {
@@ -25,13 +23,6 @@ constexpr std::string_view kNoKey = "none";
 
 double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-/// A key in memory must not reach a core file.
-void LeaveNoCore() {
-  const rlimit none{0, 0};
-  setrlimit(RLIMIT_CORE, &none);
-  prctl(PR_SET_DUMPABLE, 0);
 }
 
 NoAnswer ReasonOf(const TryOutcome& outcome) {
@@ -114,6 +105,7 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   }
   if (!key.empty()) {
     LeaveNoCore();
+    ForbidTracing();
   } else if (!format->key_optional() && *endpoint != "loopback") {
     return Error{ErrorCode::kNotFound,
                  "no key: set the environment variable " + variable};

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <utility>
@@ -66,16 +65,6 @@ std::string Dumped(const json& line) {
 }
 
 }  // namespace
-
-std::string UtcNow() {
-  const std::time_t now = std::time(nullptr);
-  tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  const std::size_t size =
-      std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return std::string(text, size);
-}
 
 std::string RecordKey(const std::string& request_hash, int repeat) {
   return request_hash + ":" + std::to_string(repeat);

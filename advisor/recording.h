@@ -38,9 +38,6 @@ Result<std::string> AnswerRecord(std::string_view open_line,
 /// Reads a line. Errors say what is missing.
 Result<RecordedCall> ParseRecord(std::string_view line);
 
-/// The time of a call as recordings write it.
-std::string UtcNow();
-
 /// What a recording files a call under: hash and repeat.
 std::string RecordKey(const std::string& request_hash, int repeat);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "advisor/recording.h"
+#include "base/utc.h"
 
 namespace terra::advisor {
 

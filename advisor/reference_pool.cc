@@ -12,6 +12,7 @@
 #include "advisor/fingerprint.h"
 #include "advisor/pictures.h"
 #include "advisor/wire_json.h"
+#include "base/base64.h"
 #include "terrain/digest.h"
 #include "terrain/native_search.h"
 #include "terrain/route_cost.h"

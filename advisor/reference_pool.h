@@ -33,7 +33,7 @@ inline constexpr double kMinLengthRatio = 1.02;  ///< length left / right.
 /// Makes the pair of a map and its ends, when it qualifies: the right route
 /// must cost at least kMinCostRatio of the left one, and the left one be at
 /// least kMinLengthRatio as long.
-/// Source: paper, LLM-Advisor (REA); PROTOCOL, Methods.
+/// Source: paper, LLM-Advisor (REA).
 std::optional<ReferencePair> MakeReferencePair(const TerrainMap& map,
                                                Cell start, Cell goal,
                                                std::string sequence = "");

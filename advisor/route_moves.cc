@@ -3,22 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <numbers>
 
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
 #include "terrain/segment_steps.h"
+#include "terrain/steps.h"
 
 namespace terra::advisor {
 namespace {
 
 // A lower bound of every route between two cells.
 double LowerBound(const TerrainMap& map, Cell from, Cell to) {
-  const int dx = std::abs(to.x - from.x);
-  const int dy = std::abs(to.y - from.y);
-  return map.costs().min_cost() *
-         (std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy));
+  return map.costs().min_cost() * OctileDistance(from, to);
 }
 
 // Returns the cheapest place for a waypoint among its own and the 8 at a

@@ -5,6 +5,7 @@
 #include "advisor/ascii.h"
 #include "advisor/encoding.h"
 #include "advisor/wire_json.h"
+#include "base/base64.h"
 
 namespace terra::advisor {
 namespace {

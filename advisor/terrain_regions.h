@@ -27,7 +27,7 @@ struct TerrainRegions {
 /// Finds the regions of more than `above_cells` cells, at most `at_most`.
 /// A cell blocked by the clearance rule counts as obstacle.
 /// Source: union of row runs, after Rosenfeld and Pfaltz 1966 (Journal of the
-///         ACM 13:4); limits from PROTOCOL, Files.
+///         ACM 13:4); the limits are those of docs/advisor.md.
 TerrainRegions FindRegions(const TerrainMap& map,
                            std::int64_t above_cells = 200,
                            std::size_t at_most = 40);

@@ -11,6 +11,7 @@
 
 #include "advisor/encoded_picture.h"
 #include "advisor/encoding.h"
+#include "base/base64.h"
 
 namespace terra::advisor {
 

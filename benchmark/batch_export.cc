@@ -9,6 +9,7 @@
 #include "advisor/batch_format.h"
 #include "advisor/llm_methods.h"
 #include "advisor/recording.h"
+#include "base/utc.h"
 #include "benchmark/batch.h"
 #include "benchmark/llm_method.h"
 #include "benchmark/progress.h"
@@ -104,7 +105,7 @@ struct Exporter {
       const Status kept = advisor::KeepImages(request, images);
       if (!kept) return kept;
     }
-    open.Write(advisor::FormatRecord(identity, request, {}, advisor::UtcNow()));
+    open.Write(advisor::FormatRecord(identity, request, {}, UtcNow()));
     ++counts.requests;
     return files.Add(advisor::BatchItem(
         *format, advisor::BatchId(hash, request.repeat), request, settings));

@@ -8,6 +8,7 @@
 #include "advisor/batch_format.h"
 #include "advisor/recording.h"
 #include "advisor/wire_json.h"
+#include "base/utc.h"
 #include "benchmark/batch.h"
 #include "terrain/files/line_reader.h"
 
@@ -111,8 +112,7 @@ Status KeepResult(const OpenRequest& request, Results& results,
     return Done{};
   }
   reply.spend_usd = prices.Spend(request.identity, reply);
-  const auto line =
-      advisor::AnswerRecord(request.line, reply, advisor::UtcNow());
+  const auto line = advisor::AnswerRecord(request.line, reply, UtcNow());
   if (!line.ok()) return line.error();
   recording << *line;
   ++counts.imported;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "benchmark/in_order.h"
+#include "benchmark/ordered_pipeline.h"
 #include "benchmark/progress.h"
 #include "output/output_file.h"
 #include "terrain/files/case_reader.h"
@@ -109,7 +109,7 @@ Result<std::vector<GapSummary>> MeasureGaps(const DatasetFolder& dataset,
   Result<OutputFile> file = OutputFile::Create(path);
   if (!file.ok()) return file.error();
   file->Write(CsvLine({"case_id", "stride", "baseline_cost", "oracle_cost"}));
-  InOrder<DatasetCase, MeasuredCase> work(
+  OrderedPipeline<DatasetCase, MeasuredCase> work(
       [&] {
         return cases->Next();
       },

@@ -12,7 +12,7 @@
 
 #include "advisor/encoding.h"
 #include "benchmark/dataset_card.h"
-#include "benchmark/in_order.h"
+#include "benchmark/ordered_pipeline.h"
 #include "benchmark/progress.h"
 #include "output/output_file.h"
 #include "terrain/builtin_legends.h"
@@ -151,7 +151,7 @@ Result<Rejections> WriteSubset(Subset subset, const GenerateOptions& options,
   int next = 0;
   Progress progress("generate " + std::string(SubsetName(subset)),
                     options.count);
-  InOrder<int, WrittenCase> work(
+  OrderedPipeline<int, WrittenCase> work(
       [&]() -> Result<std::optional<int>> {
         if (next == options.count) return std::optional<int>();
         return std::optional(next++);

@@ -25,7 +25,7 @@ struct GenerateOptions {
   int jobs = 0;  ///< 0 = all cores.
 };
 
-/// Writes a dataset folder (DESIGN, Files): cases.csv, legend.csv,
+/// Writes a dataset folder (docs/benchmark.md): cases.csv, legend.csv,
 /// dataset.json, maps, README.md (a card) and SHA256SUMS. cases.csv comes last,
 /// so a folder that has one is whole.
 ///

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/html.h"
 #include "benchmark/paper_rows.h"
 #include "benchmark/run_labels.h"
 

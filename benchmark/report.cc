@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "advisor/encoding.h"
+#include "base/base64.h"
+#include "base/html.h"
 #include "benchmark/case_list.h"
 #include "benchmark/detail_tables.h"
 #include "benchmark/missing_rows.h"
@@ -200,7 +202,7 @@ class ReportWriter {
     page_.BeginPanels(RowTitle(run));
     int number = 0;
     for (const Panel& panel : panels) {
-      page_.AddPanel(panel.caption, advisor::Base64Encode(panel.png));
+      page_.AddPanel(panel.caption, Base64Encode(panel.png));
       outputs_.push_back({"figures/panel-" + run.description.dataset_name +
                               "-" + std::to_string(++number) + ".png",
                           panel.png});

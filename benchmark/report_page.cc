@@ -3,6 +3,7 @@
 #include <set>
 #include <string_view>
 
+#include "base/html.h"
 #include "benchmark/run_labels.h"
 #include "benchmark/table.h"
 

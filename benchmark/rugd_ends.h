@@ -9,7 +9,7 @@
 
 namespace terra::benchmark {
 
-/// How ends are chosen (PROTOCOL, Cases; the paper leaves it open).
+/// How ends are chosen (docs/benchmark.md; the paper leaves it open).
 inline constexpr int kRugdDraws = 200;
 inline constexpr int kRugdEndDistance = 100;  ///< Cells, Euclidean.
 inline constexpr int kRugdStride = 50;  ///< A lattice route must exist at it.

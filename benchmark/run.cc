@@ -8,8 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "base/utc.h"
 #include "benchmark/case_work.h"
-#include "benchmark/in_order.h"
+#include "benchmark/ordered_pipeline.h"
 #include "benchmark/progress.h"
 #include "benchmark/results_file.h"
 #include "benchmark/run_description.h"
@@ -115,7 +116,7 @@ class Runner {
   /// `total`: the number of cases; `title`: what progress lines call it.
   Status Run(std::int64_t total, const std::string& title) {
     Progress progress(title, total, NumDone(total));
-    InOrder<NumberedCase, TriedMethods> work(
+    OrderedPipeline<NumberedCase, TriedMethods> work(
         [this] {
           return NextLeft();
         },

@@ -1,7 +1,5 @@
 #include "benchmark/run_description.h"
 
-#include <array>
-#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -9,6 +7,7 @@
 #include <sys/utsname.h>
 
 #include "advisor/wire_json.h"
+#include "base/utc.h"
 #include "benchmark/parallel.h"
 #include "benchmark/run_fields.h"
 #include "output/output_file.h"
@@ -160,15 +159,6 @@ std::string JointsName(planner::JointRule joints) {
       return "visible";
   }
   return "";
-}
-
-std::string UtcNow() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
 }
 
 RunDescription DescribeRun(const DatasetFolder& dataset,

@@ -84,7 +84,4 @@ Result<RunDescription> ReadRunDescription(const std::string& path);
 /// "2r", "cell" or "visible".
 std::string JointsName(planner::JointRule joints);
 
-/// The time now in UTC, as "2026-01-31T12:00:00Z".
-std::string UtcNow();
-
 }  // namespace terra::benchmark

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/html.h"
 #include "terrain/files/csv.h"
 
 namespace terra::benchmark {
@@ -104,11 +105,6 @@ TableCell PercentCell(const std::optional<Estimate>& estimate) {
   cell.low = Fixed(100 * estimate->low, 2);
   cell.high = Fixed(100 * estimate->high, 2);
   return cell;
-}
-
-std::string EscapeHtml(const std::string& text) {
-  return Replaced(
-      text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
 std::string ToCsv(const Table& table) {

@@ -56,9 +56,6 @@ std::string ToMarkdown(const Table& table);
 std::string ToLatex(const Table& table);
 std::string ToHtml(const Table& table);
 
-/// Text that is safe inside HTML.
-std::string EscapeHtml(const std::string& text);
-
 /// Figures as cells; "-" where there is none.
 TableCell CountCell(std::int64_t n);
 TableCell NumberCell(std::optional<double> value, int digits);

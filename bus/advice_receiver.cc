@@ -38,6 +38,7 @@ Result<AdviceReceiver> AdviceReceiver::Open(
   Result<UdpmReceiver> receiver = UdpmReceiver::Open(url);
   if (!receiver) return receiver.error();
   std::vector<Heard> heard;
+  heard.reserve(channels.size());
   for (const std::string& channel : channels) {
     heard.push_back({channel, AdviceRateLimiter(limits), 0});
   }

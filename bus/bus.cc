@@ -49,7 +49,7 @@ Status RoomForLcm() {
 
 }  // namespace
 
-Error WhyUnusable(const std::string& text, const std::string& what) {
+Error DiagnoseBus(const std::string& text, const std::string& what) {
   const Result<LcmUrl> url = ParseLcmUrl(text);
   if (!url) return url.error();
   std::string why = what;

@@ -17,10 +17,10 @@
 
 namespace terra::bus {
 
-/// What to say of a bus that cannot be used. liblcm does not say why it failed,
-/// so the two usual reasons (no multicast route, a busy port) are tried out;
-/// `otherwise` stands where it is neither.
-Error WhyUnusable(const std::string& url, const std::string& otherwise);
+/// Says why a bus cannot be used. liblcm does not tell why it failed, so this
+/// tries the two usual reasons: no multicast route, and a port that is taken.
+/// `otherwise` is the text of the error when it is neither.
+Error DiagnoseBus(const std::string& url, const std::string& otherwise);
 
 /// One LCM bus: opens it with checks, publishes, and receives in a thread that
 /// does nothing but fill inboxes.

@@ -54,7 +54,7 @@ Result<ChannelNames> ChannelNames::Create(const std::string& robot,
         IsMapChannel(channel) && !map_prefix.empty() ? map_prefix : robot;
     if (!prefix.empty()) {
       std::string& name = names.names_[static_cast<std::size_t>(i)];
-      name = prefix + "_" + name;
+      name.insert(0, prefix + "_");
     }
   }
   return names;

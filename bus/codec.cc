@@ -1,20 +1,17 @@
 #include "bus/codec.h"
 
 #include <algorithm>
-#include <array>
+
+#include "terrain/steps.h"
 
 namespace terra::bus {
 namespace {
 
-constexpr std::array<Cell, 8> kDirections = {
-    Cell{1, 0},  Cell{1, 1},   Cell{0, 1},  Cell{-1, 1},
-    Cell{-1, 0}, Cell{-1, -1}, Cell{0, -1}, Cell{1, -1}};
-
 std::uint8_t DirectionOf(Cell from, Cell to) {
-  const auto found = std::find(kDirections.begin(), kDirections.end(),
+  const auto found = std::find(kSteps.begin(), kSteps.end(),
                                Cell{to.x - from.x, to.y - from.y});
-  TERRA_REQUIRE(found != kDirections.end());
-  return static_cast<std::uint8_t>(found - kDirections.begin());
+  TERRA_REQUIRE(found != kSteps.end());
+  return static_cast<std::uint8_t>(found - kSteps.begin());
 }
 
 }  // namespace
@@ -51,7 +48,7 @@ Result<CellPath> DecodeChain(Cell first, const Chain& chain) {
     if (direction > 7) {
       return Error{ErrorCode::kInvalid, "a chain direction above 7"};
     }
-    const Cell step = kDirections[static_cast<std::size_t>(direction)];
+    const Cell step = kSteps[static_cast<std::size_t>(direction)];
     x += step.x;
     y += step.y;
     if (x != static_cast<int>(x) || y != static_cast<int>(y)) {

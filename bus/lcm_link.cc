@@ -95,7 +95,7 @@ int Greets(const sockaddr_in& hub) {
 
 // How long liblcm waits in the middle of a message.
 void SetPatience(int fd, int option, int milliseconds) {
-  const timeval patience = {0, 1'000 * milliseconds};
+  const timeval patience = {0, 1'000L * milliseconds};
   setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
 }
 
@@ -160,7 +160,7 @@ Result<std::unique_ptr<LcmLink>> LcmLink::Open(const std::string& url,
   }
   const std::string text = link->url_.text();
   link->in_ = link->out_ = lcm_create(text.c_str());
-  if (link->in_ == nullptr) return WhyUnusable(text, "LCM refuses it");
+  if (link->in_ == nullptr) return DiagnoseBus(text, "LCM refuses it");
   return link;
 }
 
@@ -193,9 +193,9 @@ int LcmLink::fd() const {
 // none.
 Status LcmLink::OpenReceiver() {
   Result<UdpmReceiver> opened = UdpmReceiver::Open(url_.text());
-  if (!opened) return WhyUnusable(url_.text(), opened.error().message);
+  if (!opened) return DiagnoseBus(url_.text(), opened.error().message);
   if (use_ == Use::kSendAndHear && !ComesBack(out_, *opened)) {
-    return WhyUnusable(url_.text(),
+    return DiagnoseBus(url_.text(),
                        "what is sent does not come back (a firewall?)");
   }
   receiver_.emplace(*std::move(opened));
@@ -221,7 +221,7 @@ Status LcmLink::Subscribe(const std::string& channel, Handler handler,
   }
   if (url_.is_udpm()) return receiver_ ? Status(Done{}) : OpenReceiver();
   if (!SubscribeTo(subscriptions_.back()) || lcm_get_fileno(in_) < 0) {
-    return WhyUnusable(url_.text(),
+    return DiagnoseBus(url_.text(),
                        "what is sent does not come back (a firewall?)");
   }
   return Done{};

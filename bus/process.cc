@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/secrets.h"
 #include "bus/advisor_channels.h"
 #include "bus/build_id.h"
 #include "bus/decimal_options.h"
 #include "bus/heartbeat.h"
 #include "bus/lcm_url.h"
 #include "bus/log.h"
-#include "bus/secrets.h"
 #include "bus/toml_config.h"
 #include "bus/usage_message.h"
 #include "bus/wire.h"

@@ -23,7 +23,7 @@
 namespace terra::bus {
 namespace {
 
-constexpr std::size_t kMaxConfigBytes = 64 * 1024;
+constexpr std::size_t kMaxConfigBytes = std::size_t{64} * 1024;
 // toml++ makes a table within a table of each part of a dotted key, and frees
 // them by recursion.
 constexpr int kMaxDotsInLine = 32;

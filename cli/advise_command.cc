@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "advisor/advisor_options.h"
-#include "bus/secrets.h"
+#include "base/secrets.h"
 #include "cli/baseline.h"
 #include "cli/commands.h"
 #include "cli/map_arguments.h"
@@ -67,7 +67,7 @@ Result<Advised> Advise(const AdviseArguments& arguments,
 
   const auto backend = advisor::MakeBackend(arguments.advisor);
   if (!backend) return backend.error();
-  bus::ForgetApiKeys();
+  ForgetApiKeys();
   if (arguments.advisor.backend == "exchange") {
     std::cerr << "terra: the question goes to a folder in "
               << arguments.advisor.llm.service.exchange_folder

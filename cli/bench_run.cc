@@ -12,11 +12,11 @@
 #include "advisor/llm_options.h"
 #include "advisor/llm_service.h"
 #include "advisor/prompt.h"
+#include "base/secrets.h"
 #include "benchmark/llm_method.h"
 #include "benchmark/run.h"
 #include "bus/build_id.h"
 #include "bus/map_file_options.h"
-#include "bus/secrets.h"
 #include "cli/bench_commands.h"
 #include "cli/case_selection.h"
 #include "cli/legend_notice.h"
@@ -117,7 +117,7 @@ int RunRun(RunArguments& arguments, const std::string& command_line) {
   arguments.options.cases = *std::move(cases);
   const auto runs = ChooseMethods(arguments);
   if (!runs.ok()) return Fail(runs.error());
-  bus::ForgetApiKeys();
+  ForgetApiKeys();
   for (const MethodRun& run : *runs) {
     // A model is asked one case after the other; shards run side by side.
     if (run.choice.info.asks_model) arguments.options.jobs = 1;

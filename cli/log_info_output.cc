@@ -1,13 +1,12 @@
 #include "cli/log_info_output.h"
 
-#include <array>
 #include <cstdio>
-#include <ctime>
 #include <ostream>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "base/utc.h"
 #include "cli/output.h"
 
 namespace terra::cli {
@@ -19,15 +18,9 @@ using logger::LogInfo;
 constexpr std::size_t kPlacesShown = 20;
 
 std::string Time(std::int64_t time_us) {
-  const std::time_t seconds = time_us / 1'000'000;
-  std::tm utc{};
-  std::array<char, 64> text{};
-  if (gmtime_r(&seconds, &utc) == nullptr ||
-      std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &utc) == 0) {
-    return std::to_string(time_us) + " us";
-  }
-  return text.data() +
-         Printed(".%06d UTC", static_cast<int>(time_us % 1'000'000));
+  const std::string text = FormatUtc(time_us / 1'000'000, "%Y-%m-%d %H:%M:%S");
+  if (text.empty()) return std::to_string(time_us) + " us";
+  return text + Printed(".%06d UTC", static_cast<int>(time_us % 1'000'000));
 }
 
 long long Wide(std::int64_t value) {

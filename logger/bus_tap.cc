@@ -64,7 +64,7 @@ Result<std::unique_ptr<BusTap>> BusTap::Open(const Urls& urls,
   std::unique_ptr<BusTap> tap(
       new BusTap(queue, *std::move(link), eventfd(0, EFD_CLOEXEC)));
   if (tap->stop_fd_ < 0) {
-    return bus::WhyUnusable(urls.deployed, std::strerror(errno));
+    return bus::DiagnoseBus(urls.deployed, std::strerror(errno));
   }
   const Status subscribed = tap->link_->Subscribe(".*", &BusTap::OnMessage,
                                                   tap.get(), kLcmQueueCapacity);

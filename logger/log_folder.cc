@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <system_error>
 #include <tuple>
@@ -15,6 +14,7 @@
 
 #include <sys/file.h>
 
+#include "base/utc.h"
 #include "bus/messages.h"
 #include "logger/log_channels.h"
 #include "logger/log_event.h"
@@ -143,17 +143,12 @@ Result<LogFolder> LogFolder::Open(const std::string& path) {
 
 std::string LogFolder::PartPath(std::int64_t begin_us, std::int64_t session,
                                 int part) const {
-  const std::time_t seconds = begin_us / 1'000'000;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> time{};
-  std::strftime(time.data(), time.size(), "%Y%m%dT%H%M%SZ", &utc);
   std::array<char, 32> rest{};
   std::snprintf(rest.data(), rest.size(), "-%08x.%03d",
                 static_cast<unsigned>(session), part);
   return (std::filesystem::path(path_) /
-          ("terra-" + std::string(time.data()) + rest.data() +
-           std::string(kExtension)))
+          ("terra-" + FormatUtc(begin_us / 1'000'000, "%Y%m%dT%H%M%SZ") +
+           rest.data() + std::string(kExtension)))
       .string();
 }
 

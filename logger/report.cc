@@ -1,12 +1,11 @@
 #include "logger/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <ctime>
 #include <utility>
 #include <vector>
 
+#include "base/utc.h"
 #include "bus/codec.h"
 #include "logger/audit.h"
 #include "logger/log_contents.h"
@@ -59,15 +58,9 @@ border:1px solid #0002}
 )";
 
 std::string UtcTime(std::int64_t time_us) {
-  const std::time_t seconds = time_us / 1'000'000;
-  std::tm utc{};
-  std::array<char, 64> text{};
-  if (gmtime_r(&seconds, &utc) == nullptr ||
-      std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S UTC", &utc) ==
-          0) {
-    return "?";
-  }
-  return text.data();
+  const std::string text =
+      FormatUtc(time_us / 1'000'000, "%Y-%m-%d %H:%M:%S UTC");
+  return text.empty() ? "?" : text;
 }
 
 std::string Card(const std::string& value, const char* name,

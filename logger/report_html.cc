@@ -6,35 +6,17 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "base/html.h"
+
 namespace terra::logger {
 
 std::string Escape(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      case '\n':
-        escaped += ' ';
-        break;
-      default:
-        escaped += c >= 0x20 && c < 0x7f ? c : '?';
-    }
+  std::string printable(text);
+  for (char& c : printable) {
+    if (c == '\n') c = ' ';
+    if (c < 0x20 || c > 0x7e) c = '?';
   }
-  return escaped;
+  return EscapeHtml(printable);
 }
 
 std::string Format(const char* format, ...) {
@@ -55,25 +37,6 @@ std::string Duration(double seconds) {
   if (seconds < 1e-3) return Format("%.0f &micro;s", 1e6 * seconds);
   if (seconds < 1.0) return Format("%.2f ms", 1e3 * seconds);
   return Format("%.2f s", seconds);
-}
-
-std::string Base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const char byte = k < have ? bytes[i + k] : '\0';
-      group = group << 8 | static_cast<std::uint8_t>(byte);
-    }
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-      text += digit <= have ? kDigits[(group >> (18 - 6 * digit)) & 63] : '=';
-    }
-  }
-  return text;
 }
 
 std::string Key(

@@ -30,9 +30,6 @@ std::string Number(double value, int decimals = 2);
 /// "0.65 ms", "12.3 s", ...
 std::string Duration(double seconds);
 
-/// RFC 4648, section 4.
-std::string Base64(std::string_view bytes);
-
 /// Explains colours: {as CSS has it, name}; the name is HTML already.
 std::string Key(const std::vector<std::pair<std::string, std::string>>& colors);
 

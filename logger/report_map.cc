@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/base64.h"
 #include "logger/report_html.h"
 #include "terrain/png/png.h"
 
@@ -68,7 +69,7 @@ std::string MapFigure(const TerrainMap& map,
           "style=\"image-rendering:pixelated\" href=\"data:image/png;"
           "base64,",
           map.width(), map.height(), map.width(), map.height()) +
-      Base64(png) + "\"/>\n";
+      Base64Encode(png) + "\"/>\n";
   for (const DrawnRoute& drawn : routes) svg += Polyline(drawn, 2.2 * unit);
   return svg + Marker(start, "S", 6 * unit) + Marker(goal, "G", 6 * unit) +
          "</svg>\n";

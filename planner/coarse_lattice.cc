@@ -10,14 +10,13 @@
 #include "terrain/require.h"
 #include "terrain/route_cost.h"
 #include "terrain/search_ends.h"
+#include "terrain/steps.h"
 
 namespace terra::planner {
 namespace {
 
-// The 8 steps of the lattice, in strides.
-constexpr Cell kDirections[] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
-                                {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
-constexpr int kNumDirections = 8;
+// A node's neighbours lie kSteps away, in strides.
+constexpr int kNumDirections = kSteps.size();
 // A node's way on is one of the 8 directions or the joint to the goal.
 constexpr unsigned kToGoal = 1U << kNumDirections;
 
@@ -190,7 +189,8 @@ class LatticeSearch {
   void Expand(Cell to, const Node& node) {
     const Cell to_cell = lattice_.CellOf(to);
     for (int d = 0; d < kNumDirections; ++d) {
-      const Cell from{to.x - kDirections[d].x, to.y - kDirections[d].y};
+      const Cell from{to.x - kSteps[static_cast<std::size_t>(d)].x,
+                      to.y - kSteps[static_cast<std::size_t>(d)].y};
       if (!lattice_.Contains(from) || nodes_[lattice_.Index(from)].closed) {
         continue;
       }
@@ -250,8 +250,9 @@ class LatticeSearch {
       bool chosen = (ways_on & kToGoal) != 0;
       for (int d = 0; d < kNumDirections; ++d) {
         if ((ways_on & (1U << d)) != 0) {
-          const Cell to = lattice_.CellOf(
-              {node.x + kDirections[d].x, node.y + kDirections[d].y});
+          const Cell to =
+              lattice_.CellOf({node.x + kSteps[static_cast<std::size_t>(d)].x,
+                               node.y + kSteps[static_cast<std::size_t>(d)].y});
           next = chosen ? FirstInRowOrder(next, to) : to;
           chosen = true;
         }

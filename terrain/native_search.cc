@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <numbers>
 #include <utility>
 
 #include "terrain/bucket_search.h"
 #include "terrain/route_cost.h"
 #include "terrain/search_ends.h"
 #include "terrain/search_keys.h"
+#include "terrain/steps.h"
 #include "terrain/sweep_search.h"
 
 namespace terra {
@@ -60,10 +59,7 @@ bool NarrowKeysMayHoldResult(const Query& query) {
 }
 
 double OctileCost(const Query& query) {
-  const int dx = std::abs(query.start.x - query.goal.x);
-  const int dy = std::abs(query.start.y - query.goal.y);
-  return query.map.costs().min_cost() *
-         (std::max(dx, dy) + (std::numbers::sqrt2 - 1) * std::min(dx, dy));
+  return query.map.costs().min_cost() * OctileDistance(query.start, query.goal);
 }
 
 // Wide vectors sweep a map in less time than A* takes in all but the easiest

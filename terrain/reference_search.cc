@@ -1,19 +1,16 @@
 #include "terrain/reference_search.h"
 
 #include <algorithm>
-#include <numbers>
 #include <queue>
 #include <utility>
 #include <vector>
 
 #include "terrain/route_cost.h"
 #include "terrain/search_ends.h"
+#include "terrain/steps.h"
 
 namespace terra {
 namespace {
-
-constexpr Cell kDirections[] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
-                                {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
 bool MayStep(const TerrainMap& map, Cell from, Cell to) {
   if (!map.Contains(to) || !map.Passable(to)) {
@@ -55,14 +52,12 @@ SearchResult ReferenceSearch(const TerrainMap& map, Cell start, Cell goal) {
     if (cell == goal) {
       break;
     }
-    for (const Cell step : kDirections) {
+    for (const Cell step : kSteps) {
       const Cell next{cell.x + step.x, cell.y + step.y};
       if (!MayStep(map, cell, next)) {
         continue;
       }
-      const double length =
-          step.x != 0 && step.y != 0 ? std::numbers::sqrt2 : 1;
-      const double candidate = d + length * map.Cost(next);
+      const double candidate = d + StepLength(cell, next) * map.Cost(next);
       if (candidate < distance[index(next)]) {
         distance[index(next)] = candidate;
         parent[index(next)] = cell;

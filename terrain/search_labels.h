@@ -11,12 +11,11 @@ namespace terra {
 /// The keys of the best paths found to the cells of a map, kept between
 /// searches without clearing.
 ///
-/// The keys of a search start at its origin, which lies below all labels of the
-/// searches before it. So what those have left needs no mark to be told by; it
-/// is above any key that this search can reach. Keys have kKeyBits of the
-/// integer, the rest counts the searches down; when none is left, after 255 of
-/// them, the labels are cleared.
-/// Threads: one search at a time.
+/// Each search starts its keys at an origin of its own, below the origin of the
+/// search before it. Stale labels need no marker: they exceed every key that
+/// this search can produce. A key has kKeyBits bits; the bits above them count
+/// the searches down. After 255 searches the labels are cleared. Threads: one
+/// search at a time.
 template <std::unsigned_integral Key>
 class SearchLabels {
  public:

@@ -6,12 +6,9 @@
 #include "terrain/cell.h"
 #include "terrain/cost_grid.h"
 #include "terrain/map.h"
+#include "terrain/steps.h"
 
 namespace terra {
-
-/// The eight steps clockwise from east; the odd ones are diagonal.
-inline constexpr std::array<Cell, 8> kSteps = {
-    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 /// Walks a CostGrid by index, for searches.
 class GridSteps {

@@ -26,7 +26,7 @@ class BlockRelaxer {
     return task_.keys + std::int64_t{y} * task_.stride;
   }
 
-  // Gives all cells of a row the key of what has none. The cells to the east of
+  // Marks every cell of a row as unreached. The cells to the east of
   // a row's last block are the west border of the next one, which may never be
   // cleared for itself.
   void ClearRow(int y) {

@@ -20,7 +20,7 @@ struct SweepTask {
 
   std::uint32_t straight_per_unit;
   std::uint32_t diagonal_per_unit;
-  std::uint32_t limit;  ///< NarrowKeys::kLimit: the key of what has none.
+  std::uint32_t limit;  ///< NarrowKeys::kLimit: marks a cell as unreached.
 
   int start_row;
   int start_column;

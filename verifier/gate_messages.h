@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "terrain/anchor.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
 #include "verifier/verify.h"
@@ -54,18 +55,6 @@ struct BaselineEvent {
   bool has_route = false;  ///< Status OK; else the planner found none.
   std::int64_t baseline_digest = 0;
   Route waypoints;
-};
-
-/// Where a proposal starts: an index into the dense cells of the route that
-/// this route_seq of the gate's session named. Index 0 is the start and needs
-/// neither.
-struct Anchor {
-  std::int64_t session = 0;
-  std::int64_t route_seq = 0;
-  std::int32_t index = 0;
-  Cell cell;
-
-  friend bool operator==(const Anchor&, const Anchor&) = default;
 };
 
 /// What kind of answer an advisor has. Numbers are those of advice_t.

@@ -10,29 +10,30 @@ import re
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]')
-FOLDERS = ["terrain", "output", "bus", "planner", "verifier", "advisor", "logger",
+FOLDERS = ["base", "terrain", "output", "bus", "planner", "verifier", "advisor", "logger",
            "benchmark", "chaos", "cli"]
 
 # Project folders that a folder may include, besides itself. "terrain" is the
 # pure ground truth; "terrain/files" are its readers and writers.
 ALLOWED = {
+    "base": set(),
     "terrain": set(),
     "terrain/png": {"terrain"},
     "terrain/files": {"terrain", "terrain/png", "output"},
     # Files written whole, standard output: for all that writes.
     "output": {"terrain"},
-    "bus": {"terrain", "output", "terra_msg"},
+    "bus": {"base", "terrain", "output", "terra_msg"},
     "planner": {"terrain"},
     "verifier": {"terrain"},
-    "advisor": {"terrain", "terrain/png", "output"},
-    "logger": {"terrain", "terrain/png", "verifier", "bus", "terra_msg"},
-    "benchmark": {"terrain", "terrain/png", "terrain/files", "planner",
+    "advisor": {"base", "terrain", "terrain/png", "output"},
+    "logger": {"base", "terrain", "terrain/png", "verifier", "bus", "terra_msg"},
+    "benchmark": {"base", "terrain", "terrain/png", "terrain/files", "planner",
                   "advisor", "verifier", "output"},
     "chaos": {"terrain", "verifier", "bus", "terra_msg"},
     # A program that measures all of it.
     "benchmark/speed": {"terrain", "planner", "advisor", "verifier",
                         "benchmark", "bus", "output"},
-    "cli": {"terrain", "terrain/files", "planner", "advisor", "verifier",
+    "cli": {"base", "terrain", "terrain/files", "planner", "advisor", "verifier",
             "logger", "benchmark", "bus", "output", "terra_msg"},
 }
 # Process code: files that talk to the bus. Pure files of a folder never

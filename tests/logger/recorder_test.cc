@@ -321,7 +321,7 @@ TEST_P(RecorderIntruded, SaysSoAndGoesOnInANewPart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Ways, RecorderIntruded,
+    Intrusions, RecorderIntruded,
     ::testing::Values(
         Intrusion{"folder deleted",
                   [](const std::string& path) {

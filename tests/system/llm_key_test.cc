@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bus/secrets.h"
+#include "base/secrets.h"
 #include "tests/support/bar_map.h"
 #include "tests/support/scripted_llm_server.h"
 #include "tests/system/robot.h"
@@ -174,7 +174,7 @@ TEST_F(KeyOfTheModel, IsInNoMessageLogRecordingResultOrOutput) {
 
 // What others of the same user could read.
 TEST_F(KeyOfTheModel, IsInNobodysEnvironmentOnceHeRuns) {
-  for (const char* variable : bus::kApiKeyVariables) {
+  for (const char* variable : kApiKeyVariables) {
     setenv(variable, (kSecret + std::string(variable)).c_str(), 1);
   }
   const std::vector<std::string> others = {"map", "planner", "verifier"};
@@ -185,7 +185,7 @@ TEST_F(KeyOfTheModel, IsInNobodysEnvironmentOnceHeRuns) {
     robot_.Start(backend, {"--backend", backend, "--base-url", server_.url(),
                            "--model", "any"});
   }
-  for (const char* variable : bus::kApiKeyVariables) unsetenv(variable);
+  for (const char* variable : kApiKeyVariables) unsetenv(variable);
   const auto read_of = [&](const std::string& name, const std::string& file) {
     EXPECT_TRUE(robot_.WaitForReady(name)) << name;
     return ReadBytes("/proc/" + std::to_string(robot_.process(name).pid()) +

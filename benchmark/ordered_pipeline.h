@@ -23,7 +23,7 @@ inline constexpr int kItemsAhead = 32;
 /// Works on items side by side and takes what comes of them in their order.
 /// The number of items that are in memory is bounded.
 template <typename Item, typename Outcome>
-class InOrder {
+class OrderedPipeline {
  public:
   /// The next item; none at the end, and then it is not called again.
   /// Threads: of one at a time.
@@ -33,7 +33,7 @@ class InOrder {
   /// Threads: of one at a time, in order of the items.
   using Take = std::function<Status(Outcome)>;
 
-  InOrder(Next next, Work work, Take take)
+  OrderedPipeline(Next next, Work work, Take take)
       : next_(std::move(next)),
         work_(std::move(work)),
         take_(std::move(take)) {}

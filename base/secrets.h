@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace terra::bus {
+namespace terra {
 
 /// The environment variables in which providers' API keys come.
 inline constexpr std::array<const char*, 4> kApiKeyVariables = {
@@ -18,4 +18,7 @@ void ForgetApiKeys();
 /// This process writes no core file.
 void LeaveNoCore();
 
-}  // namespace terra::bus
+/// Other processes of the same user may not look into this one's memory.
+void ForbidTracing();
+
+}  // namespace terra

@@ -1,4 +1,4 @@
-#include "benchmark/in_order.h"
+#include "benchmark/ordered_pipeline.h"
 
 #include <atomic>
 #include <semaphore>
@@ -30,12 +30,12 @@ class Counter {
   std::shared_ptr<int> next_ = std::make_shared<int>(0);
 };
 
-TEST(InOrder, TakesWhatIsDoneSideBySideInOrderOfTheItems) {
+TEST(OrderedPipeline, TakesWhatIsDoneSideBySideInOrderOfTheItems) {
   constexpr int kItems = 2000;
   std::vector<int> taken;
   std::vector<int> expected;
   for (int i = 0; i < kItems; ++i) expected.push_back(2 * i);
-  InOrder<int, int> work(
+  OrderedPipeline<int, int> work(
       Counter(kItems),
       [](const int& i) -> Result<int> {
         if (i % 7 == 0) std::this_thread::yield();
@@ -49,13 +49,13 @@ TEST(InOrder, TakesWhatIsDoneSideBySideInOrderOfTheItems) {
   EXPECT_EQ(taken, expected);
 }
 
-TEST(InOrder, OneThatTakesLongHoldsUpABoundedNumber) {
+TEST(OrderedPipeline, OneThatTakesLongHoldsUpABoundedNumber) {
   constexpr int kJobs = 2;
   const Counter counter(1000);
   std::atomic<int> others = 0;
   std::binary_semaphore window_is_full{0};
   int most = 0;
-  InOrder<int, int> work(
+  OrderedPipeline<int, int> work(
       counter,
       [&](const int& i) -> Result<int> {
         if (i == 0) {
@@ -73,10 +73,10 @@ TEST(InOrder, OneThatTakesLongHoldsUpABoundedNumber) {
   EXPECT_EQ(most, kJobs * kItemsAhead);
 }
 
-TEST(InOrder, WhatComesBeforeAFaultIsTakenAndNothingAfter) {
+TEST(OrderedPipeline, WhatComesBeforeAFaultIsTakenAndNothingAfter) {
   for (const int jobs : {1, 3}) {
     std::vector<int> taken;
-    InOrder<int, int> work(
+    OrderedPipeline<int, int> work(
         Counter(100),
         [](const int& i) -> Result<int> {
           if (i == 5) return Error{ErrorCode::kInvalid, "five"};
@@ -91,9 +91,9 @@ TEST(InOrder, WhatComesBeforeAFaultIsTakenAndNothingAfter) {
   }
 }
 
-TEST(InOrder, AFaultOfTakingEndsIt) {
+TEST(OrderedPipeline, AFaultOfTakingEndsIt) {
   std::vector<int> taken;
-  InOrder<int, int> work(
+  OrderedPipeline<int, int> work(
       Counter(100),
       [](const int& i) -> Result<int> {
         return i;
@@ -107,9 +107,9 @@ TEST(InOrder, AFaultOfTakingEndsIt) {
   EXPECT_THAT(taken, ::testing::ElementsAre(0, 1, 2));
 }
 
-TEST(InOrder, AFaultOfTheItemsEndsIt) {
+TEST(OrderedPipeline, AFaultOfTheItemsEndsIt) {
   int calls = 0;
-  InOrder<int, int> work(
+  OrderedPipeline<int, int> work(
       [&]() -> Result<std::optional<int>> {
         if (++calls == 4) return Error{ErrorCode::kInvalid, "line 4"};
         return std::optional(calls);
@@ -124,8 +124,8 @@ TEST(InOrder, AFaultOfTheItemsEndsIt) {
   EXPECT_EQ(calls, 4);
 }
 
-TEST(InOrder, AnExceptionIsThrownWhenAllThreadsHaveEnded) {
-  InOrder<int, int> work(
+TEST(OrderedPipeline, AnExceptionIsThrownWhenAllThreadsHaveEnded) {
+  OrderedPipeline<int, int> work(
       Counter(100),
       [](const int& i) -> Result<int> {
         if (i == 50) throw std::runtime_error("fifty");

@@ -1,11 +1,12 @@
-#include "bus/secrets.h"
+#include "base/secrets.h"
 
 #include <cstdlib>
 #include <cstring>
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 
-namespace terra::bus {
+namespace terra {
 
 void ForgetApiKeys() {
   for (const char* variable : kApiKeyVariables) {
@@ -20,4 +21,8 @@ void LeaveNoCore() {
   setrlimit(RLIMIT_CORE, &none);
 }
 
-}  // namespace terra::bus
+void ForbidTracing() {
+  prctl(PR_SET_DUMPABLE, 0);
+}
+
+}  // namespace terra

@@ -288,16 +288,14 @@ bool SessionAudit::FindMap(const Step& step, verifier::MapEvent& event) {
 
 // The gate left the bytes out to keep its rate; the recorder may have heard the
 // advice itself. Of the deployed bus so much changes only where somebody who is
-// trusted floods it, and then the next step names the core all the same.
+// trusted floods it. Advice that led to nothing has no step.
 std::optional<GateEvent> SessionAudit::EventFromLog(const Step& step) {
-  if (step.kind != gate_step_t::KIND_ADVICE) {
+  if (step.kind != gate_step_t::KIND_ADVICE || step.num_decisions == 0) {
     audit_.unchecked += step.num_decisions;
-    if (step.num_decisions > 0) {
-      Fail(Finding::Kind::kMissingInput, step.decision,
-           StepName(step.step) +
-               " does not hold its event: more changed on the deployed bus "
-               "than a journal takes");
-    }
+    Fail(Finding::Kind::kMissingInput, step.decision,
+         StepName(step.step) +
+             " does not hold its event: more changed on the deployed bus than "
+             "a journal takes");
     return std::nullopt;
   }
   const terra_msg::advice_t* advice = contents_.FindAdvice(step.event_digest);

@@ -332,9 +332,6 @@ const std::vector<Change>& Changes() {
       {"kind",
        [](auto& step) {
          step.kind = static_cast<std::int8_t>(step.kind % 7 + 1);
-       },
-       [](const auto& step) {
-         return step.num_bytes > 0;
        }},
       {"lookup",
        [](auto& step) {

@@ -115,17 +115,6 @@ void AddPromptOptions(CLI::App& app, MethodOptions& method,
       ->check(CLI::IsMember({"advisor", "direct", "llm-astar"}))
       ->default_str("advisor")
       ->group(group);
-  app.add_flag("--overlay,!--no-overlay", prompt.overlay,
-               "Show the picture with the baseline (default)")
-      ->default_str("true")
-      ->group(group);
-  app.add_flag("--route-text,!--no-route-text", prompt.route_text,
-               "Describe the baseline's points and cost (default)")
-      ->default_str("true")
-      ->group(group);
-  app.add_flag("--rea,!--no-rea", prompt.rea, "Show a reference pair (default)")
-      ->default_str("true")
-      ->group(group);
   app.add_option_function<std::string>(
          "--picture",
          [&prompt](const std::string& form) {
@@ -149,14 +138,30 @@ void AddPromptOptions(CLI::App& app, MethodOptions& method,
                  "Pool of reference pairs (default: the one that comes along)")
       ->type_name("F.jsonl")
       ->group(group);
+  app.add_option("--seed", method.seed,
+                 "Of the choice of references, and of noise")
+      ->capture_default_str()
+      ->group(group);
+}
+
+void AddExperimentOptions(CLI::App& app, MethodOptions& method) {
+  const std::string group = "Experiments";
+  PromptSwitches& prompt = method.prompt;
+  app.add_flag("--overlay,!--no-overlay", prompt.overlay,
+               "Show the picture with the baseline (default)")
+      ->default_str("true")
+      ->group(group);
+  app.add_flag("--route-text,!--no-route-text", prompt.route_text,
+               "Describe the baseline's points and cost (default)")
+      ->default_str("true")
+      ->group(group);
+  app.add_flag("--rea,!--no-rea", prompt.rea, "Show a reference pair (default)")
+      ->default_str("true")
+      ->group(group);
   app.add_option("--noise", method.noise_percent,
                  "Percent of the cells that the model is shown wrongly")
       ->capture_default_str()
       ->check(bus::InRange(0.0, 100.0))
-      ->group(group);
-  app.add_option("--seed", method.seed,
-                 "Of the choice of references and of noise")
-      ->capture_default_str()
       ->group(group);
 }
 

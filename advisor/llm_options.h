@@ -11,10 +11,14 @@ class App;
 
 namespace terra::advisor {
 
-/// Adds only what shapes the question: --method, switches, --references (a pool
-/// file), noise, seed.
+/// Adds what shapes the question: --method, --picture, --candidates,
+/// --references (a pool file), --seed and the like.
 void AddPromptOptions(CLI::App& app, MethodOptions& method,
                       std::string& references);
+
+/// Adds what only experiments want: parts of the question left out, noise on
+/// the map. A robot's advisor has none of these.
+void AddExperimentOptions(CLI::App& app, MethodOptions& method);
 
 /// Adds what a model is asked with: --model, token limit, effort, image detail.
 void AddSettingsOptions(CLI::App& app, GenerationSettings& settings);

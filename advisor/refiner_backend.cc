@@ -17,15 +17,6 @@ struct NamedRefiner {
 constexpr NamedRefiner kRefiners[] = {
     {"search", RefineBySearch},
     {"shortcut", RefineByShortcut},
-    {"band",
-     [](const RefineInput& input) {
-       return RefineByBand(input);
-     }},
-    {"campana",
-     [](const RefineInput& input) {
-       return RefineByCampana(input, CampanaForm::kKeepBest);
-     }},
-    {"app", RefineByAppStyle},
 };
 
 class RefinerBackend : public Backend {

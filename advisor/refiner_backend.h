@@ -9,8 +9,8 @@
 
 namespace terra::advisor {
 
-/// Returns the deterministic backend of that name ("search", "shortcut",
-/// "band", "campana", "app"), or null. It proposes a strictly cheaper route or
+/// Returns the deterministic backend of that name ("search", "shortcut"), or
+/// null. It proposes a strictly cheaper route or
 /// says that it retains.
 std::unique_ptr<Backend> MakeRefinerBackend(std::string_view name);
 

@@ -49,13 +49,13 @@ Route ShortcutOver(const TerrainMap& map, const Route& points,
   return route;
 }
 
-RefineOutput Cheaper(const RefineInput& input, Route route) {
+}  // namespace
+
+RefineOutput OrBaseline(const RefineInput& input, Route route) {
   const double cost = WalkRoute(input.map, route).cost;
   if (cost < input.baseline_cost) return {std::move(route), cost};
   return {input.baseline, input.baseline_cost};
 }
-
-}  // namespace
 
 RefineOutput RefineBySearch(const RefineInput& input) {
   const SearchResult found =
@@ -65,7 +65,7 @@ RefineOutput RefineBySearch(const RefineInput& input) {
   const auto segment_cost = [&](Cell from, Cell to) {
     return SegmentCost(input.map, from, to);
   };
-  return Cheaper(input, ThinWaypoints(CornersOf(found.cells), segment_cost));
+  return OrBaseline(input, ThinWaypoints(CornersOf(found.cells), segment_cost));
 }
 
 RefineOutput RefineByShortcut(const RefineInput& input) {
@@ -86,17 +86,9 @@ RefineOutput RefineByShortcut(const RefineInput& input) {
     route = std::move(next);
     cost = next_cost;
   }
-  return Cheaper(input, ThinWaypoints(route, [&](Cell from, Cell to) {
-                   return SegmentCost(input.map, from, to);
-                 }));
-}
-
-RefineOutput RefineByBand(const RefineInput& input, int half_width) {
-  const Corridor corridor(input.map, std::array{input.baseline}, half_width);
-  Route route = RouteInCorridor(input.map, corridor, input.baseline.front(),
-                                input.baseline.back());
-  TERRA_REQUIRE(!route.empty());  // The baseline's own cells are a path.
-  return Cheaper(input, std::move(route));
+  return OrBaseline(input, ThinWaypoints(route, [&](Cell from, Cell to) {
+                      return SegmentCost(input.map, from, to);
+                    }));
 }
 
 }  // namespace terra::advisor

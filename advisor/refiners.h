@@ -2,7 +2,6 @@
 
 #include <stop_token>
 
-#include "advisor/corridor.h"
 #include "terrain/cell.h"
 #include "terrain/map.h"
 
@@ -36,27 +35,7 @@ RefineOutput RefineBySearch(const RefineInput& input);
 /// (Geraerts and Overmars 2007), made cost-aware.
 RefineOutput RefineByShortcut(const RefineInput& input);
 
-/// Optimum inside the corridor of Chebyshev `half_width` around the baseline.
-RefineOutput RefineByBand(const RefineInput& input,
-                          int half_width = kCorridorHalfWidth);
-
-enum class CampanaForm {
-  kLastIterate,      ///< Length objective, exactly as it ends: may be dearer.
-  kKeepBest,         ///< Length objective, the cheapest valid iterate.
-  kTerrainWeighted,  ///< Segments weighted by their terrain cost, keep-best.
-};
-
-/// Gradient-based shortening of the baseline's waypoints, which adds none and
-/// slides them along obstacles by linear constraints; see campana.cc.
-/// Source: Campana, Lamiraux, Laumond 2016, A gradient-based path optimization
-///         method for motion planning (Advanced Robotics 30), as their public
-///         implementation has it, for a point robot in the plane.
-RefineOutput RefineByCampana(const RefineInput& input, CampanaForm form);
-
-/// APP-style: vertex reduction from both ends, each segment cost-gated, and
-/// iterative perturbation, repeated until nothing falls.
-/// Source: after the abstract of Li, Cheng 2023 (IEEE RA-L 8(11)), which leaves
-///         the thresholds open; not the authors' implementation.
-RefineOutput RefineByAppStyle(const RefineInput& input);
+/// The route with its cost, or the baseline where the route is not cheaper.
+RefineOutput OrBaseline(const RefineInput& input, Route route);
 
 }  // namespace terra::advisor

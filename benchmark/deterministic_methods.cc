@@ -2,10 +2,11 @@
 #include <span>
 #include <utility>
 
-#include "advisor/controls.h"
 #include "advisor/prompt.h"
 #include "advisor/refiners.h"
 #include "benchmark/method.h"
+#include "benchmark/methods/comparison_refiners.h"
+#include "benchmark/methods/controls.h"
 #include "benchmark/single_search.h"
 #include "benchmark/stopwatch.h"
 #include "planner/optimum.h"
@@ -13,9 +14,6 @@
 
 namespace terra::benchmark {
 namespace {
-
-using advisor::CampanaForm;
-using advisor::RefineInput;
 
 using Planner = std::function<Route(const MethodInput&)>;
 
@@ -42,7 +40,7 @@ Route Refined(const MethodInput& input) {
 
 template <CampanaForm form>
 Route Campana(const MethodInput& input) {
-  return advisor::RefineByCampana(InputOf(input), form).route;
+  return RefineByCampana(InputOf(input), form).route;
 }
 
 // Backends of `advisor` that need no model.
@@ -53,14 +51,14 @@ const std::vector<NamedPlanner>& Refiners() {
       {"shortcut", "shortcut (cost-gated all-pairs, perturbed)", kGated, true,
        Refined<advisor::RefineByShortcut>},
       {"app", "APP-style (after the abstract)", kGated, true,
-       Refined<advisor::RefineByAppStyle>},
+       Refined<RefineByAppStyle>},
       {"campana", "Campana (length objective, keep-best)", kGated, true,
        Campana<CampanaForm::kKeepBest>},
       {"campana-terrain", "Campana (terrain-weighted, keep-best)", kGated, true,
        Campana<CampanaForm::kTerrainWeighted>},
       {"band", "band (corridor of 25 around the baseline)", kGated, true,
        [](const MethodInput& input) {
-         return advisor::RefineByBand(InputOf(input)).route;
+         return RefineByBand(InputOf(input)).route;
        }},
   };
   return kRefiners;
@@ -86,13 +84,13 @@ const std::vector<NamedPlanner>& PlainMethods() {
       {"campana-last", "Campana (length objective, last iterate)", kAsReturned,
        true, Campana<CampanaForm::kLastIterate>},
       {"collision-shortcut", "control: collision-only shortcut", kAsReturned,
-       true, Refined<advisor::ShortcutWithoutCost>},
+       true, Refined<ShortcutWithoutCost>},
       {"straight-line", "control: straight line", kAsReturned, false,
-       Refined<advisor::StraightLine>},
+       Refined<StraightLine>},
       {"corridor", "control: corridor of 25 around the baseline, no model",
        kGated, true,
        [](const MethodInput& input) {
-         return advisor::RefineByBand(InputOf(input)).route;
+         return RefineByBand(InputOf(input)).route;
        }},
       {"llm-astar-single",
        "control: LLM-A* in its original single search, no advice", kAsReturned,
@@ -103,7 +101,7 @@ const std::vector<NamedPlanner>& PlainMethods() {
        }},
       {"blind-detours",
        "control: straight line and two blind detours, polished, no model",
-       kGated, true, Refined<advisor::RefineByBlindDetours>},
+       kGated, true, Refined<RefineByBlindDetours>},
   };
   return kMethods;
 }

@@ -122,6 +122,7 @@ void AddBenchExportBatch(CLI::App& bench, int& exit_code) {
       ->required()
       ->check(CLI::IsMember({"openai", "anthropic", "gemini"}))
       ->type_name("B");
+  advisor::AddExperimentOptions(command, arguments->llm.method);
   advisor::AddPromptOptions(command, arguments->llm.method,
                             arguments->llm.references);
   advisor::AddSettingsOptions(command,

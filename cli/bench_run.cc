@@ -152,6 +152,7 @@ std::string BackendHelp() {
 
 void AddOptions(CLI::App& command, RunArguments& arguments) {
   // The method is this command's own, and everybody is asked about every case.
+  advisor::AddExperimentOptions(command, arguments.llm.method);
   advisor::AddLlmOptions(command, arguments.llm);
   command.remove_option(command.get_option("--method"));
   command.remove_option(command.get_option("--min-gain"));

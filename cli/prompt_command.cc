@@ -128,6 +128,7 @@ void AddPromptCommand(CLI::App& app, int& exit_code) {
                      "Name of the case, which chooses reference pair and noise "
                      "(default: as on the bus)");
   command.add_flag("--json", arguments->json, "Print JSON");
+  advisor::AddExperimentOptions(command, arguments->method);
   advisor::AddPromptOptions(command, arguments->method, arguments->references);
   command.footer(
       "Example:\n"

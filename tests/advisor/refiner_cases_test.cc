@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "advisor/controls.h"
 #include "advisor/refiners.h"
+#include "benchmark/methods/comparison_refiners.h"
+#include "benchmark/methods/controls.h"
 #include "terrain/route_cost.h"
 #include "terrain/route_text.h"
 #include "terrain/segment.h"
@@ -12,6 +13,10 @@
 
 namespace terra::advisor {
 namespace {
+
+using benchmark::CampanaForm;
+using benchmark::RefineByAppStyle;
+using benchmark::RefineByCampana;
 
 using testing::MapFromAscii;
 

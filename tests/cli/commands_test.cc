@@ -396,11 +396,10 @@ TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
         // What is on without a word of the user's says so too.
         Case{"terra-advisor",
              {},
-             {"method=\"advisor\"\n", "overlay=true\n", "route-text=true\n",
-              "rea=true\n", "images=true\n"}},
+             {"method=\"advisor\"\n", "images=true\n"}},
         Case{"terra-advisor",
-             {"--method", "direct", "--no-rea", "--price", "m=1:2"},
-             {"method=\"direct\"\n", "rea=false\n", "m=1:2"}},
+             {"--method", "direct", "--no-images", "--price", "m=1:2"},
+             {"method=\"direct\"\n", "images=false\n", "m=1:2"}},
         Case{"terra-advisor",
              {"--record", "a\\b 'c' #d.jsonl"},
              {"record=\"a\\\\b 'c' #d.jsonl\"\n"}}}) {

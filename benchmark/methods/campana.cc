@@ -21,11 +21,11 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 
-#include "advisor/refiners.h"
+#include "benchmark/methods/comparison_refiners.h"
 #include "terrain/require.h"
 #include "terrain/route_cost.h"
 
-namespace terra::advisor {
+namespace terra::benchmark {
 namespace {
 
 using Eigen::MatrixX2d;
@@ -268,4 +268,4 @@ RefineOutput RefineByCampana(const RefineInput& input, CampanaForm form) {
   return {std::move(last), cost};
 }
 
-}  // namespace terra::advisor
+}  // namespace terra::benchmark

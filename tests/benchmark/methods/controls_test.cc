@@ -1,17 +1,18 @@
 // The methods that need no model, on the 32 maps of tests/data/llm-answers: the
 // rows of its README, which another program computed.
-#include "advisor/controls.h"
+#include "benchmark/methods/controls.h"
 
 #include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "benchmark/methods/comparison_refiners.h"
 #include "planner/coarse_lattice.h"
 #include "terrain/files/dataset.h"
 #include "terrain/native_search.h"
 
-namespace terra::advisor {
+namespace terra::benchmark {
 namespace {
 
 constexpr double kEpsilon = 1e-6;
@@ -79,4 +80,4 @@ TEST(ControlsTest, StraightLineScoresAsRecorded) {
 }
 
 }  // namespace
-}  // namespace terra::advisor
+}  // namespace terra::benchmark

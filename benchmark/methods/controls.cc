@@ -1,4 +1,4 @@
-#include "advisor/controls.h"
+#include "benchmark/methods/controls.h"
 
 #include <cmath>
 #include <utility>
@@ -7,7 +7,7 @@
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
 
-namespace terra::advisor {
+namespace terra::benchmark {
 namespace {
 
 // The middle of start and goal, moved by `sideways` of their distance.
@@ -34,7 +34,7 @@ RefineOutput RefineByBlindDetours(const RefineInput& input) {
   for (const double sideways : {0.0, kSideways, -kSideways}) {
     if (input.stop.stop_requested()) break;
     RefineOutput polished =
-        Polish(input, {start, Detour(start, goal, sideways), goal});
+        advisor::Polish(input, {start, Detour(start, goal, sideways), goal});
     if (polished.cost < best.cost) best = std::move(polished);
   }
   return best;
@@ -57,4 +57,4 @@ RefineOutput ShortcutWithoutCost(const RefineInput& input) {
   return {std::move(route), cost};
 }
 
-}  // namespace terra::advisor
+}  // namespace terra::benchmark

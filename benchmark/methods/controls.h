@@ -1,8 +1,8 @@
 #pragma once
 
-#include "advisor/refiners.h"
+#include "benchmark/methods/comparison_refiners.h"
 
-namespace terra::advisor {
+namespace terra::benchmark {
 
 /// What a method must beat before its gains are its own: routes found without
 /// looking at the terrain, or without asking what it costs. None of them is an
@@ -23,4 +23,4 @@ RefineOutput RefineByBlindDetours(const RefineInput& input);
 ///         and Overmars 2007, Int. J. of Robotics Research 26).
 RefineOutput ShortcutWithoutCost(const RefineInput& input);
 
-}  // namespace terra::advisor
+}  // namespace terra::benchmark

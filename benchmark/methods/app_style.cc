@@ -5,13 +5,18 @@
 #include <utility>
 #include <vector>
 
-#include "advisor/refiners.h"
 #include "advisor/route_moves.h"
+#include "benchmark/methods/comparison_refiners.h"
 #include "terrain/route_cost.h"
 #include "terrain/segment.h"
 
-namespace terra::advisor {
+namespace terra::benchmark {
 namespace {
+
+using advisor::kGain;
+using advisor::PerturbWaypoints;
+using advisor::SegmentCostBelow;
+using advisor::ThinWaypoints;
 
 // Cells between the ends that a new segment is tried with.
 constexpr std::size_t kSpacing = 4;
@@ -24,7 +29,7 @@ class Reduction {
   Reduction(const TerrainMap& map, const Route& route)
       : map_(map),
         cells_(RasterizeRoute(route)),
-        prefix_(PrefixCosts(cells_, [&map](Cell from, Cell to) {
+        prefix_(advisor::PrefixCosts(cells_, [&map](Cell from, Cell to) {
           return SegmentCost(map, from, to);
         })) {}
 
@@ -107,4 +112,4 @@ RefineOutput RefineByAppStyle(const RefineInput& input) {
   return best;
 }
 
-}  // namespace terra::advisor
+}  // namespace terra::benchmark

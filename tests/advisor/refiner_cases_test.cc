@@ -17,6 +17,7 @@ namespace {
 using benchmark::CampanaForm;
 using benchmark::RefineByAppStyle;
 using benchmark::RefineByCampana;
+using benchmark::ShortcutWithoutCost;
 
 using testing::MapFromAscii;
 

@@ -394,9 +394,7 @@ TEST(TerraUsage, PrintedConfigIsReadBackTheSame) {
   for (const Case& tested :
        {Case{"terra-planner", {"--stride", "25"}, {"stride=25\n"}},
         // What is on without a word of the user's says so too.
-        Case{"terra-advisor",
-             {},
-             {"method=\"advisor\"\n", "images=true\n"}},
+        Case{"terra-advisor", {}, {"method=\"advisor\"\n", "images=true\n"}},
         Case{"terra-advisor",
              {"--method", "direct", "--no-images", "--price", "m=1:2"},
              {"method=\"direct\"\n", "images=false\n", "m=1:2"}},

@@ -252,7 +252,7 @@ Result<RunDescription> ReadRunDescription(const std::string& path) {
     }
     return d;
   } catch (const nlohmann::json::exception& error) {
-    return Error{ErrorCode::kInvalid, path + ": " + error.what()};
+    return Error{ErrorCode::kInvalid, path + ": " + advisor::JsonFault(error)};
   }
 }
 

@@ -145,6 +145,15 @@ TEST_F(RunFieldsTest, AFieldThatNobodyDeclaredStandsInTheTitle) {
               HasSubstr("does not know the field /configuration/weather"));
 }
 
+TEST_F(RunFieldsTest, AMissingFieldIsNamedInPlainWords) {
+  json document = Written(Described("openai"));
+  document["configuration"].erase("stride");
+  const std::string message = ErrorMessage(Read(document));
+  EXPECT_THAT(message, HasSubstr("stride"));
+  EXPECT_THAT(message, HasSubstr("run.json"));
+  EXPECT_THAT(message, ::testing::Not(HasSubstr("json.exception")));
+}
+
 TEST_F(RunFieldsTest, NoTwoMethodsHaveOneTitle) {
   std::map<std::string, std::string> methods;
   const auto add = [&](const RunDescription& d, const std::string& name) {

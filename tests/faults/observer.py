@@ -10,10 +10,13 @@ usage: observer.py --port P --fields FIELDS.json --out REPORT.json
 """
 import argparse
 import collections
+import heapq
+import itertools
 import json
 import select
 import signal
 import struct
+import time
 
 import bus
 import exact
@@ -281,9 +284,34 @@ def require(holds, what):
         raise Wrong(what)
 
 
+class SendOrder:
+    """Messages in the order in which they were sent.
+
+    A sender's datagram reaches one socket after the other. When the machine
+    takes the processor away in between, a process that has it already answers
+    before the observer has it. The kernel's stamp is of the sending, so the
+    observer waits a little and goes by the stamps.
+    """
+
+    WAIT_NS = 200_000_000
+
+    def __init__(self):
+        self._held = []  # (ns, number, message), a heap
+        self._numbers = itertools.count()
+
+    def add(self, heard):
+        heapq.heappush(self._held, (heard.ns, next(self._numbers), heard))
+
+    def until(self, ns):
+        """Yields what was sent by then."""
+        while self._held and self._held[0][0] <= ns:
+            yield heapq.heappop(self._held)[2]
+
+
 def listen(port, observer):
     """Until SIGTERM. Returns (now, what was lost for want of room)."""
     deployed, advice = bus.Tap(port), bus.Tap(port + 1)
+    in_send_order = SendOrder()
     ended = []
     signal.signal(signal.SIGTERM, lambda *_: ended.append(True))
     print("listening", flush=True)
@@ -291,11 +319,16 @@ def listen(port, observer):
     while not ended:
         select.select([deployed, advice], [], [], 0.05)
         for heard in deployed.heard():
+            in_send_order.add(heard)
+        for heard in in_send_order.until(time.time_ns() - SendOrder.WAIT_NS):
             last_ns = heard.ns
             observer.hear(heard)
         observer.hear_advice(advice.heard(200))
     observer.hear_advice(advice.heard(QUEUED_ADVICE))
     for heard in deployed.heard(QUEUED_ADVICE):
+        in_send_order.add(heard)
+    for heard in in_send_order.until(time.time_ns()):
+        last_ns = heard.ns
         observer.hear(heard)
     return last_ns, deployed.overflown + advice.overflown
 

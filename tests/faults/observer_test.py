@@ -140,6 +140,16 @@ class Observer(unittest.TestCase):
         changed = deployed(3, CHEAP, 2) | {"source_attempt": 4}
         self.assertIn("two routes", self.violation(*GOOD, ("deployed", changed)))
 
+    def test_messages_are_judged_in_the_order_of_their_sending(self):
+        in_send_order = observer.SendOrder()
+        heard = [bus.Heard(ns, name, b"") for ns, name in
+                 ((30, "deployed"), (20, "baseline"), (20, "again"), (90, "later"))]
+        for one in heard:
+            in_send_order.add(one)
+        self.assertEqual([one.channel for one in in_send_order.until(89)],
+                         ["baseline", "again", "deployed"])
+        self.assertEqual([one.channel for one in in_send_order.until(90)], ["later"])
+
 
 class ExactCost(unittest.TestCase):
     def test_order_is_that_of_the_numbers(self):

@@ -20,7 +20,8 @@ os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
 import fleet  # noqa: E402 (both need the path above)
 import rows  # noqa: E402
 
-MODULES = ["advisor_rows", "share_rows", "process_rows", "network_rows", "map_rows", "disk_rows", "machine_rows"]
+MODULES = ["advisor_rows", "share_rows", "process_rows", "network_rows", "map_rows", "disk_rows",
+           "recorder_rows", "machine_rows"]
 SANDBOX = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc",
            "sh", "-c", "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo"
            # (libfaketime leaves its shared memory behind)

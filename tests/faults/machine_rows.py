@@ -7,13 +7,15 @@ from rig import PORT, SET, require, url
 from rows import row
 import advisor_rows
 
+FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1"
+
 
 @row("clock steps of an hour, both ways", "GATE 19; LCM clock step",
      ["verifier:trusts-clock"], short=True)
 def clock_steps(rig):
     offset = rig.folder / "offset"
     offset.write_text("+0")
-    faked = ("env", "LD_PRELOAD=/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1",
+    faked = ("env", f"LD_PRELOAD={FAKETIME}",
              f"FAKETIME_TIMESTAMP_FILE={offset}", "FAKETIME_NO_CACHE=1",
              "FAKETIME_DONT_FAKE_MONOTONIC=1")
     rig.define("planner", "terra-planner", "--stride", 20, before=faked)

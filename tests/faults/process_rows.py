@@ -3,6 +3,8 @@ import contextlib
 import os
 import signal
 import time
+import urllib.error
+import urllib.request
 
 import field
 from rig import SET, require
@@ -156,18 +158,50 @@ def stderr_unread(rig):
     rig.define("verifier", "terra-verifier", before=before)
     rig.define("logger", "terra-logger", "--out", rig.log, before=before)
     rig.define("searcher", "terra-advisor", "--name", "searcher", before=before)
-    rig.set_up("searcher", "logger")
+    rig.define("cutter", "terra-advisor", "--name", "cutter", "--backend", "shortcut",
+               before=before)
+    rig.define("chaos", "terra-chaos", "--all", "--rate", 20, before=before)
+    more = ("searcher", "cutter", "logger")
+    rig.set_up(*more, "chaos")
+    model = start_model(rig, before)
     for _ in range(50):
         rig.serve()
-        # A word of the gate's for its log.
+        # A word of the gate's for its log, and one of the model's.
         rig.advice_bus.say_raw("TERRA_ADVICE", b"no advice")
         rig.injected += 1
+        require(refuses_nonsense(model), "the model does not answer")
     rig.await_candidate()
-    for name in (*SET, "searcher", "logger"):
+    rig.status.clear()
+    for name in (*SET, *more, "chaos"):
+        rig.await_(lambda: name in rig.status, 5, f"no heartbeat of {name}")
+    for name in (*SET, *more, "chaos", "model"):
         code = rig[name].terminate()
         require(code in (0, -signal.SIGTERM), f"{name} ended with {code}")
     os.close(pipe)
     return "all requests served; each process ends when it is asked to"
+
+
+def start_model(rig, before):
+    """Starts a terra-llm-sim; its URL."""
+    port_file = rig.folder / "model-port"
+    rig.define("model", "terra-llm-sim", before=before)
+    rig["model"].command = [*before, rig.bin / "terra-llm-sim", "--latency", 0, "--port-file",
+                            port_file]
+    rig.start("model")
+    rig.await_(lambda: port_file.exists() and port_file.read_text().strip(), 5,
+               "the model does not start")
+    return f"http://127.0.0.1:{port_file.read_text().strip()}"
+
+
+def refuses_nonsense(model):
+    """The model answers a question of no known form."""
+    try:
+        urllib.request.urlopen(model + "/v1/chat/completions", b"{}", timeout=2)
+    except urllib.error.HTTPError as answer:
+        return answer.code == 400
+    except OSError:
+        return False
+    return False
 
 
 @row("advisor restarted 5 times a second", "LCM flapping", ["verifier:waits-for-advice"])
@@ -211,11 +245,16 @@ def newest_log(rig):
     return max(rig.log.glob("*.lcmlog"), key=lambda path: path.stat().st_mtime_ns)
 
 
-def events_in(rig, log):
-    """Counted by the suite's own reader: whole events in a row."""
-    data, at, count = log.read_bytes(), 0, 0
+def events_of(log):
+    """Whole events in a row, by the suite's own reader: (channel, data)."""
+    data, at = log.read_bytes(), 0
     while data[at:at + 4] == b"\xed\xa1\xda\x01" and at + 28 <= len(data):
-        at += 28 + int.from_bytes(data[at + 20:at + 24], "big") \
-            + int.from_bytes(data[at + 24:at + 28], "big")
-        count += at <= len(data)
-    return count
+        name = at + 28 + int.from_bytes(data[at + 20:at + 24], "big")
+        end = name + int.from_bytes(data[at + 24:at + 28], "big")
+        if end <= len(data):
+            yield data[at + 28:name].decode(), data[name:end]
+        at = end
+
+
+def events_in(rig, log):
+    return sum(1 for _ in events_of(log))

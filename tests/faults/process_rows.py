@@ -149,7 +149,8 @@ def unread_pipe(folder):
     return pipe, path
 
 
-@row("nobody reads what the processes log (a full pipe)", "-", ["verifier:waits-for-stderr"])
+@row("nobody reads what the processes log (a full pipe)", "-",
+     ["verifier:waits-for-stderr", "logger:waits-for-stderr", "model:waits-for-stderr"])
 def stderr_unread(rig):
     pipe, path = unread_pipe(rig.folder)
     before = ("sh", "-c", f"exec \"$@\" 2>>'{path}'", "sh")
@@ -187,6 +188,8 @@ def start_model(rig, before):
     rig.define("model", "terra-llm-sim", before=before)
     rig["model"].command = [*before, rig.bin / "terra-llm-sim", "--latency", 0, "--port-file",
                             port_file]
+    if rig.flaw == "model:waits-for-stderr":
+        rig["model"].command = [*before, "sh", "-c", f"echo it begins >&2; echo 1 >'{port_file}'"]
     rig.start("model")
     rig.await_(lambda: port_file.exists() and port_file.read_text().strip(), 5,
                "the model does not start")

@@ -21,7 +21,7 @@ import process_rows
 import rig
 
 FLAWS = ("none writes-at-the-end silent starts-anyway waits-for-disk never-syncs "
-         "forgets-losses").split()
+         "forgets-losses waits-for-stderr").split()
 SLOW_S = 1.0
 
 
@@ -137,6 +137,8 @@ def main():
             if flaw == "writes-at-the-end":
                 acknowledged += len(kept)
             watchdog()
+            if flaw == "waits-for-stderr":
+                os.write(2, b"a heartbeat\n")
             taps[0].say("TERRA_STATUS", {
                 "status_name": "logger", "state": f"failing: {error}" if bad else "ready",
                 "num_counters": 2, "counter_name": ["acknowledged", "lost"],

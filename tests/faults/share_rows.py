@@ -1,4 +1,5 @@
 """Who is judged, and how long a baseline waits, while others do all they may."""
+import contextlib
 import multiprocessing
 import random
 import select
@@ -142,7 +143,7 @@ class Large:
     """A gate on a map of the largest size; the row is its planner."""
 
     def __init__(self, rig):
-        self._random = random.Random(1)
+        self._rig, self._random = rig, random.Random(1)
         path = rig.folder / "large.png"
         field.Field([bytes([1]) * LARGE_SIDE] * LARGE_SIDE).save(path)
         rig.define("large-map", "terra-map", "--map", path, "--legend", rig.legend,
@@ -214,6 +215,17 @@ class Large:
                 "session": 1 + number % len(self._advisors),
                 "waypoint_y": [y for _, y in route]}))
 
+    @contextlib.contextmanager
+    def _busy(self, size):
+        """A broken gate looks at nothing else for a moment after a burst."""
+        broken = size > 0 and self._rig.flaw == "gate:judges-it-all-first"
+        if broken:
+            self._rig["large-gate"].stop()
+        yield
+        if broken:
+            time.sleep(0.03)
+            self._rig["large-gate"].resume()
+
     def phase(self, bursts, size):
         """Four bursts a second, and into each a new baseline. Sorted latencies."""
         self.latencies_ms.clear()
@@ -221,7 +233,8 @@ class Large:
             begin = time.monotonic()
             self.burst(size)
             self.hear(self._random.uniform(0, 0.004))
-            self.plan()
+            with self._busy(size):
+                self.plan()
             self.hear(begin + 0.25 - time.monotonic())
         require(len(self.latencies_ms) == bursts,
                 f"{len(self.latencies_ms)} of {bursts} baselines are deployed")
@@ -234,7 +247,7 @@ def in_words(latencies):
 
 
 @row("the dearest legal advice: 200 a second of 75,000 steps, 8192 x 8192 cells, in bursts",
-     "GATE 8; LCM floods", [], lossy=True)
+     "GATE 8; LCM floods", ["gate:judges-it-all-first"], lossy=True)
 def dearest_advice(rig):
     rig.set_up()
     rig.serve()  # (for the observer, which knows the small maps)

@@ -42,7 +42,8 @@ class ServiceManager:
             pass
         if self._alive is not None:
             silent = time.monotonic() - self._alive
-            require(silent < WATCHDOG_S, f"the watchdog aborts the logger: silent for {silent:.1f} s")
+            require(silent < WATCHDOG_S,
+                    f"the watchdog aborts the logger: silent for {silent:.1f} s")
 
 
 def define_on_slow_disk(rig, *environment, stall_s=STALL_S):

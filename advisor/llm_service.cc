@@ -8,11 +8,13 @@
 namespace terra::advisor {
 namespace {
 
-Result<std::unique_ptr<LlmClient>> MakeClient(
-    const LlmServiceOptions& options) {
+Result<std::unique_ptr<LlmClient>> MakeClient(const LlmServiceOptions& options,
+                                              AtLimit at_limit) {
   if (options.backend == "replay") {
-    return ReplayClient::Create(options.recording,
-                                options.provider.settings.model);
+    return ReplayClient::Create(
+        options.recording, options.provider.settings.model,
+        at_limit == AtLimit::kRefuse ? ReplayFile::kWatched
+                                     : ReplayFile::kOnce);
   }
   if (options.backend == "exchange") {
     ExchangeOptions exchange;
@@ -36,7 +38,7 @@ Result<LlmService> MakeLlmService(const LlmServiceOptions& options,
     if (price.empty()) continue;  // So --print-config writes "no price".
     if (const auto added = prices.Add(price); !added) return added.error();
   }
-  auto client = MakeClient(options);
+  auto client = MakeClient(options, at_limit);
   if (!client) return client.error();
   const std::string model = (*client)->identity().model;
   if (options.limits.spend_per_hour_usd > 0 && !prices.Knows(model)) {

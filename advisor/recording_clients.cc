@@ -40,7 +40,7 @@ LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
                             ? Status(Done{})
                             : KeepImages(request, image_folder_);
     file_ << FormatRecord(identity(), request, reply, UtcNow()) << std::flush;
-    if (!kept.ok() || !file_) {
+    if (!kept || !file_) {
       // The answer is still good; that it was not kept must not stay unseen.
       reply.error += reply.error.empty() ? "" : "; ";
       reply.error += kept.ok() ? "the recording could not be written"
@@ -51,49 +51,101 @@ LlmReply RecordingClient::Ask(const LlmRequest& request, std::stop_token stop) {
   return reply;
 }
 
-Result<std::unique_ptr<LlmClient>> ReplayClient::Create(
-    const std::string& path, const std::string& model) {
-  if (path.empty()) {
-    return Error{ErrorCode::kInvalid,
-                 "replay needs a recording: --recording F.jsonl"};
-  }
-  std::optional<LlmIdentity> identity;
-  std::unordered_map<std::string, LlmReply> replies;
+namespace {
+
+Result<RecordedReplies> ReadReplies(const std::string& path,
+                                    const std::string& model) {
+  RecordedReplies recorded;
+  bool any = false;
   const Status read =
       ForEachRecordedCall(path, [&](RecordedCall call, const std::string& at) {
         if (!model.empty() && call.identity.model != model) {
           return Status(Done{});
         }
-        if (!identity) identity = call.identity;
-        if (identity->model != call.identity.model ||
-            identity->settings != call.identity.settings) {
+        if (!any) {
+          recorded.identity = call.identity;
+        }
+        any = true;
+        if (recorded.identity.model != call.identity.model ||
+            recorded.identity.settings != call.identity.settings) {
           return Status(Error{
               ErrorCode::kInvalid,
               at + "another model or other settings than before; choose one "
                    "with --model, or split the file"});
         }
-        replies[RecordKey(call.request_hash, call.repeat)] =
+        recorded.replies[RecordKey(call.request_hash, call.repeat)] =
             std::move(call.reply);
         return Status(Done{});
       });
-  if (!read) return read.error();
-  if (!identity) {
+  if (!read) {
+    return read.error();
+  }
+  if (!any) {
     return Error{
         ErrorCode::kNotFound,
         path + ": no recorded call" + (model.empty() ? "" : " of ") + model};
   }
-  return std::unique_ptr<LlmClient>(
-      std::make_unique<ReplayClient>(*std::move(identity), std::move(replies)));
+  return recorded;
 }
 
-ReplayClient::ReplayClient(LlmIdentity identity,
-                           std::unordered_map<std::string, LlmReply> replies)
-    : identity_(std::move(identity)), replies_(std::move(replies)) {}
+bool SameModel(const LlmIdentity& a, const LlmIdentity& b) {
+  return a.model == b.model && a.settings == b.settings;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LlmClient>> ReplayClient::Create(
+    const std::string& path, const std::string& model, ReplayFile file) {
+  if (path.empty()) {
+    return Error{ErrorCode::kInvalid,
+                 "replay needs a recording: --recording F.jsonl"};
+  }
+  auto client = std::make_unique<ReplayClient>(path, model, file);
+  const Status read = client->watch_.Begin();
+  if (!read) return read.error();
+  return std::unique_ptr<LlmClient>(std::move(client));
+}
+
+ReplayClient::ReplayClient(const std::string& path, const std::string& model,
+                           ReplayFile file)
+    : file_(file), watch_([this, path, model] {
+        return Read(path, model);
+      }) {}
+
+Status ReplayClient::Read(const std::string& path, const std::string& model) {
+  OpenedFiles::Note(path);
+  Result<RecordedReplies> recorded = ReadReplies(path, model);
+  if (!recorded) return recorded.error();
+  if (!recorded_.replies.empty() &&
+      !SameModel(recorded_.identity, recorded->identity)) {
+    return Error{ErrorCode::kInvalid,
+                 path +
+                     ": it is of another model or other settings now; "
+                     "restart to answer from it"};
+  }
+  recorded_ = *std::move(recorded);
+  return Done{};
+}
 
 LlmReply ReplayClient::Ask(const LlmRequest& request, std::stop_token) {
-  const std::string hash = RequestHash(identity_, request);
-  const auto at = replies_.find(RecordKey(hash, request.repeat));
-  if (at != replies_.end()) {
+  if (file_ == ReplayFile::kWatched) {
+    const std::optional<Status> read = watch_.ReadIfChanged();
+    if (read) {
+      not_read_ = read->ok() ? "" : read->error().message;
+    }
+  }
+  LlmReply reply = Recorded(request);
+  if (!not_read_.empty()) {
+    reply.error += (reply.error.empty() ? "" : "; ") +
+                   ("the recording was not read again: " + not_read_);
+  }
+  return reply;
+}
+
+LlmReply ReplayClient::Recorded(const LlmRequest& request) const {
+  const std::string hash = RequestHash(recorded_.identity, request);
+  const auto at = recorded_.replies.find(RecordKey(hash, request.repeat));
+  if (at != recorded_.replies.end()) {
     return at->second;
   }
   LlmReply none;

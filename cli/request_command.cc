@@ -159,8 +159,10 @@ void AddRequestCommand(CLI::App& app, int& exit_code) {
                    "where the planner finds no route on the one it has "
                    "(default 10); a baseline is waited for at least 2 s")
       ->check(bus::InRange(0.0, 86'400.0));
-  command->add_flag("--keep", arguments->keep,
-                    "go on asking until stopped (Ctrl-C)");
+  command
+      ->add_flag("--keep", arguments->keep,
+                 "go on asking until stopped (Ctrl-C), whatever map comes")
+      ->excludes("--map");
   command->add_flag("--need-advice", arguments->need_advice,
                     "exit with 3 where the baseline is deployed and no advice "
                     "on it came");

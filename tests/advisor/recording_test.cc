@@ -74,7 +74,7 @@ TEST(Recording, IsAddedToAndTheLastReplyCounts) {
   const std::string path = folder.Path("calls.jsonl");
   Record(path, "a");
   Record(path, "b");
-  auto replay = ReplayClient::Create(path, "");
+  auto replay = ReplayClient::Create(path, "", ReplayFile::kOnce);
   ASSERT_TRUE(replay.ok());
   EXPECT_THAT((*replay)->Ask(Question("a"), {}).text, HasSubstr("to a "));
   EXPECT_EQ((*replay)->Ask(Question("b"), {}).t_llm_s, 1.5);
@@ -92,7 +92,7 @@ TEST(Recording, WhatAKilledWriterLeftIsCutOffBeforeTheNextLine) {
        {std::size_t{1}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(path, std::ios::binary) << whole << whole.substr(0, cut);
     Record(path, "b");
-    auto replay = ReplayClient::Create(path, "");
+    auto replay = ReplayClient::Create(path, "", ReplayFile::kOnce);
     ASSERT_TRUE(replay.ok()) << cut;
     EXPECT_TRUE((*replay)->Ask(Question("a"), {}).came());
     EXPECT_TRUE((*replay)->Ask(Question("b"), {}).came());
@@ -105,9 +105,34 @@ TEST(Recording, ADamagedLineInItsMiddleIsNamed) {
   Record(path, "a");
   const std::string whole = ReadBytes(path);
   std::ofstream(path, std::ios::binary) << whole << "{}\n" << whole;
-  const auto replay = ReplayClient::Create(path, "");
+  const auto replay = ReplayClient::Create(path, "", ReplayFile::kOnce);
   ASSERT_FALSE(replay.ok());
   EXPECT_THAT(replay.error().message, HasSubstr("calls.jsonl:2: "));
+}
+
+LlmReply AskOnce(LlmClient& client, const std::string& text) {
+  return client.Ask(Question(text), {});
+}
+
+TEST(Recording, WhatARobotReplaysIsReadAgainWhenItChanges) {
+  const TempFolder folder;
+  const std::string path = folder.Path("calls.jsonl");
+  Record(path, "first");
+  const auto watched = ReplayClient::Create(path, "", ReplayFile::kWatched);
+  const auto once = ReplayClient::Create(path, "", ReplayFile::kOnce);
+  ASSERT_TRUE(watched);
+  ASSERT_TRUE(once);
+  Record(path, "second");
+  EXPECT_THAT(AskOnce(**watched, "second").text, HasSubstr("to second"));
+  EXPECT_EQ(AskOnce(**watched, "first").error, "");
+  EXPECT_EQ(AskOnce(**once, "second").reason, NoAnswer::kNotRecorded);
+
+  fs::rename(path, path + ".old");
+  const LlmReply kept = AskOnce(**watched, "first");
+  EXPECT_TRUE(kept.came());
+  EXPECT_THAT(kept.error, HasSubstr("not read again: " + path));
+  fs::rename(path + ".old", path);
+  EXPECT_EQ(AskOnce(**watched, "first").error, "");
 }
 
 TEST(Recording, CallsWithoutAnAnswerAreNotKept) {

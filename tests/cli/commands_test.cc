@@ -273,6 +273,8 @@ TEST(TerraUsage, WrongUsageExitsWithTwoAndPointsToHelp) {
       {"render", "--map", "m.png"},
       {"advise", "--backend", "magic"},
       {"request", "--start", "1,2"},
+      {"request", "--start", "1,2", "--goal", "3,4", "--map", "m.png",
+       "--keep"},
   };
   for (const std::vector<std::string>& arguments : wrong) {
     const RunResult run = Terra(arguments);

@@ -25,7 +25,7 @@ ALLOWED = {
     "bus": {"base", "terrain", "output", "terra_msg"},
     "planner": {"terrain"},
     "verifier": {"terrain"},
-    "advisor": {"base", "terrain", "terrain/png", "output"},
+    "advisor": {"base", "terrain", "terrain/png", "terrain/files", "output"},
     "logger": {"base", "terrain", "terrain/png", "verifier", "bus", "terra_msg"},
     "benchmark": {"base", "terrain", "terrain/png", "terrain/files", "planner",
                   "advisor", "verifier", "output"},

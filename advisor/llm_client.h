@@ -31,8 +31,8 @@ struct LlmIdentity {
   /// Settings that change answers, as JSON text with sorted keys.
   std::string settings = "{}";
   /// Where the request goes: "provider", "loopback" (results are SIMULATED),
-  /// "loopback-model" (a real model on this machine), "other" (a base URL of
-  /// the user's), "file".
+  /// "loopback-model" (a real model on this machine), "other ADDRESS" (a
+  /// server of the user's), "file".
   std::string endpoint_class;
 };
 

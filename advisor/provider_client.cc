@@ -114,7 +114,11 @@ Result<std::unique_ptr<LlmClient>> ProviderClient::Create(
   }
   std::string endpoint_class = *endpoint;
   if (*endpoint != "loopback") {
-    if (own_url) endpoint_class = "provider";
+    // Two servers may give two models one name: the address tells them apart.
+    endpoint_class = own_url
+                         ? "provider"
+                         : "other " + EndpointUrl(full.base_url,
+                                                  format->Path(full.settings));
   } else if (full.real_model) {
     endpoint_class = "loopback-model";
   }

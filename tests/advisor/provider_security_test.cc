@@ -207,10 +207,22 @@ TEST(ProviderSecurityTest, AServerOnThisMachineIsNoRealModelUnlessSaid) {
   EXPECT_EQ(
       (*ProviderClient::Create("chat", options))->identity().endpoint_class,
       "loopback-model");
-  options.base_url = "https://example.org";
-  EXPECT_EQ(
-      (*ProviderClient::Create("chat", options))->identity().endpoint_class,
-      "other");
+}
+
+TEST(ProviderSecurityTest, AServerElsewhereIsToldByItsAddress) {
+  ProviderOptions options;
+  const auto endpoint = [&options](const std::string& base_url) {
+    options.base_url = base_url;
+    return (*ProviderClient::Create("chat", options))
+        ->identity()
+        .endpoint_class;
+  };
+  EXPECT_EQ(endpoint("https://example.org"),
+            "other https://example.org/v1/chat/completions");
+  EXPECT_EQ(endpoint("https://example.org/v1/"),
+            endpoint("https://example.org"));
+  EXPECT_NE(endpoint("https://example.org:8443"),
+            endpoint("https://example.org"));
 }
 
 TEST(ProviderSecurityTest, PlainHttpIsForThisMachineOnly) {
